@@ -1,0 +1,226 @@
+#include "agricolmap/2_grid/grid_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
+
+namespace agricolmap {
+
+void describe(OptionTable& table, GridOptions& options) {
+  table.number("cell", options.cell, 0.005, 1.0, "m", "side of a grid cell, s in the paper");
+  table.number("sigma", options.sigma, 0.001, 10.0, "m",
+               "deviation of the Gaussian weight around a cell's centre, sigma_avg in the paper");
+  table.choice("exg", options.exg, {"plain", "chromatic"},
+               "Excess Green on raw colours (the paper's) or on chromatic coordinates");
+}
+
+float excessGreen(Rgb colour, ExgKind kind) {
+  const int sum = colour.r + colour.g + colour.b;
+  const int excess = 3 * colour.g - sum;
+  if (kind == ExgKind::kPlain) return static_cast<float>(excess) / 255.0F;
+  return sum == 0 ? 0.0F : static_cast<float>(excess) / static_cast<float>(sum);
+}
+
+namespace {
+
+constexpr int kBandRows = 16;
+constexpr std::size_t kChunk = 1U << 16;
+constexpr double kMaxCells = 4e8;
+
+GridFrame frameFor(const Box2& window, double cell) {
+  GridFrame frame;
+  frame.cell = cell;
+  const Eigen::Array2d low = (window.min().array() / cell).floor();
+  const Eigen::Array2d high = (window.max().array() / cell).ceil().max(low + 1.0);
+  const Eigen::Array2d count = high - low;
+  if (!(count.prod() <= kMaxCells)) {
+    throw InputError(fmt::format(
+        "a map of {:.0f} x {:.0f} m has too many cells of {} m (limit {:.0e}); crop the clouds, "
+        "tighten the prior or enlarge grid.cell",
+        window.sizes().x(), window.sizes().y(), cell, kMaxCells));
+  }
+  frame.corner = (low * cell).matrix();
+  frame.cols = static_cast<int>(count.x());
+  frame.rows = static_cast<int>(count.y());
+  return frame;
+}
+
+/// A point inside the map, levelled: what the accumulation needs, small enough to sort.
+struct Located {
+  float u;  ///< continuous column, cell 0 spans [0, 1)
+  float v;  ///< continuous row
+  float z;
+  std::uint32_t index;
+};
+
+/// The points of the window, grouped by bands of rows and in file order inside a band, so that
+/// bands can be summed in parallel with the same result on any number of threads.
+struct Bands {
+  std::vector<Located> points;
+  std::vector<std::size_t> begin;  ///< per band, plus the end
+};
+
+/// Continuous cell of a levelled point; false outside the map.
+class Locator {
+ public:
+  Locator(const GridFrame& frame, const Eigen::Affine3d& levelled_from_local)
+      : rows_(static_cast<float>(frame.rows)), cols_(static_cast<float>(frame.cols)) {
+    Eigen::Matrix<double, 3, 4> m = levelled_from_local.matrix().topRows<3>();
+    m.topRows<2>() /= frame.cell;
+    m.col(3).head<2>() -= frame.corner / frame.cell;
+    linear_ = m.leftCols<3>().cast<float>();
+    shift_ = m.col(3).cast<float>();
+  }
+  bool locate(const Eigen::Vector3f& p, Located& out) const {
+    const Eigen::Vector3f q = linear_ * p + shift_;
+    if (!(q.x() >= 0.0F && q.y() >= 0.0F && q.x() < cols_ && q.y() < rows_)) return false;
+    out.u = q.x();
+    out.v = q.y();
+    out.z = q.z();
+    return true;
+  }
+
+ private:
+  float rows_;
+  float cols_;
+  Eigen::Matrix3f linear_;
+  Eigen::Vector3f shift_;
+};
+
+Bands sortIntoBands(const Cloud& cloud, const GridFrame& frame, const Locator& locator) {
+  const std::size_t bands = static_cast<std::size_t>((frame.rows + kBandRows - 1) / kBandRows);
+  const std::size_t chunks = (cloud.size() + kChunk - 1) / kChunk;
+  // Count per chunk and band first; the prefix sums then give every chunk its own places.
+  std::vector<std::size_t> places(chunks * bands, 0);
+  const auto forPoints = [&](std::size_t chunk, auto&& visit) {
+    Located located{};
+    const std::size_t end = std::min(cloud.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      if (!locator.locate(cloud.xyz[i], located)) continue;
+      located.index = static_cast<std::uint32_t>(i);
+      visit(static_cast<std::size_t>(located.v) / kBandRows, located);
+    }
+  };
+  parallelFor(chunks, [&](std::size_t chunk) {
+    forPoints(chunk, [&](std::size_t band, const Located&) { ++places[chunk * bands + band]; });
+  });
+  Bands result;
+  result.begin.resize(bands + 1);
+  std::size_t next = 0;
+  for (std::size_t band = 0; band < bands; ++band) {
+    result.begin[band] = next;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+      next += std::exchange(places[chunk * bands + band], next);
+    }
+  }
+  result.begin[bands] = next;
+  result.points.resize(next);
+  parallelFor(chunks, [&](std::size_t chunk) {
+    forPoints(chunk, [&](std::size_t band, const Located& located) {
+      result.points[places[chunk * bands + band]++] = located;
+    });
+  });
+  return result;
+}
+
+/// Weighted sums of one cell.
+struct CellSum {
+  float weight = 0.0F;
+  float height = 0.0F;
+  float exg = 0.0F;
+  std::array<float, 3> colour{};
+  float nearest_distance = std::numeric_limits<float>::max();
+  std::uint32_t nearest = 0;
+};
+
+void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_row, int cols,
+                    const Located* begin, const Located* end, std::vector<CellSum>& sums) {
+  const float cells2_to_exponent =
+      static_cast<float>(-0.5 * options.cell * options.cell / (options.sigma * options.sigma));
+  for (const Located* p = begin; p != end; ++p) {
+    const int col = static_cast<int>(p->u);
+    const int row = static_cast<int>(p->v);
+    const float du = p->u - static_cast<float>(col) - 0.5F;
+    const float dv = p->v - static_cast<float>(row) - 0.5F;
+    const float distance2 = du * du + dv * dv;
+    const float weight = std::exp(cells2_to_exponent * distance2);
+    CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * cols + col];
+    sum.weight += weight;
+    sum.height += weight * p->z;
+    if (cloud.hasColour()) {
+      const Rgb colour = cloud.rgb[p->index];
+      sum.exg += weight * excessGreen(colour, options.exg);
+      sum.colour[0] += weight * colour.r;
+      sum.colour[1] += weight * colour.g;
+      sum.colour[2] += weight * colour.b;
+    }
+    if (distance2 < sum.nearest_distance) {
+      sum.nearest_distance = distance2;
+      sum.nearest = p->index;
+    }
+  }
+}
+
+void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMap& map) {
+  for (int row = first_row; row < first_row + rows; ++row) {
+    for (int col = 0; col < map.frame.cols; ++col) {
+      const CellSum& sum =
+          sums[static_cast<std::size_t>(row - first_row) * map.frame.cols + col];
+      if (sum.weight <= 0.0F) continue;
+      const std::size_t i = map.weight.index(row, col);
+      const float scale = 1.0F / sum.weight;
+      map.weight[i] = sum.weight;
+      map.height[i] = scale * sum.height;
+      map.exg[i] = scale * sum.exg;
+      map.colour[i] = {static_cast<std::uint8_t>(scale * sum.colour[0] + 0.5F),
+                       static_cast<std::uint8_t>(scale * sum.colour[1] + 0.5F),
+                       static_cast<std::uint8_t>(scale * sum.colour[2] + 0.5F)};
+      map.nearest[i] = sum.nearest;
+    }
+  }
+}
+
+}  // namespace
+
+GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
+                    const Box2& window, const GridOptions& options) {
+  checkOptions(options);
+  if (cloud.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(fmt::format("{}: more than 2^32 points; split the cloud", cloud.name));
+  }
+  GridMap map;
+  map.frame = frameFor(window, options.cell);
+  const int rows = map.frame.rows;
+  const int cols = map.frame.cols;
+  const Bands bands = sortIntoBands(cloud, map.frame, Locator(map.frame, levelled_from_local));
+  map.points = bands.points.size();
+  if (map.points == 0) {
+    throw InputError(fmt::format(
+        "{}: no point lies in the window that the initial guess gives; check --prior and the "
+        "offset.xyz files (do both clouds use the same coordinate system?)",
+        cloud.name));
+  }
+  map.weight = Raster<float>(rows, cols);
+  map.height = Raster<float>(rows, cols);
+  map.exg = Raster<float>(rows, cols);
+  map.colour = Raster<Rgb>(rows, cols);
+  map.nearest = Raster<std::uint32_t>(rows, cols);
+  parallelFor(bands.begin.size() - 1, [&](std::size_t band) {
+    const int first_row = static_cast<int>(band) * kBandRows;
+    const int band_rows = std::min(kBandRows, rows - first_row);
+    std::vector<CellSum> sums(static_cast<std::size_t>(band_rows) * cols);
+    accumulateBand(cloud, options, first_row, cols, bands.points.data() + bands.begin[band],
+                   bands.points.data() + bands.begin[band + 1], sums);
+    writeBand(sums, first_row, band_rows, map);
+  });
+  map.filled = static_cast<std::size_t>(
+      std::count_if(map.weight.begin(), map.weight.end(), [](float w) { return w > 0.0F; }));
+  return map;
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,14 @@
+#include "agricolmap/4_associate/association.hpp"
+
+namespace agricolmap {
+
+void describe(OptionTable& table, PriorUncertainty& options) {
+  table.number("translation", options.translation, 0.0, 1000.0, "m",
+               "how far off the initial guess may be, horizontally (paper: 5)");
+  table.number("heading_deg", options.heading_deg, 0.0, 180.0, "deg",
+               "how far off its heading may be (paper: 11.5)");
+  table.number("scale", options.scale, 0.0, 0.5, "",
+               "how far off each horizontal scale may be, relative (paper: 0.30)");
+}
+
+}  // namespace agricolmap

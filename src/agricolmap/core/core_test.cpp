@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <numbers>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/options.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/core/transform.hpp"
+
+namespace agricolmap {
+namespace {
+
+enum class Colour { kRed, kGreen };
+struct InnerOptions {
+  double size = 2.0;
+};
+struct OuterOptions {
+  InnerOptions inner;
+  int count = 3;
+  bool on = false;
+  Colour colour = Colour::kGreen;
+};
+void describe(OptionTable& table, InnerOptions& o) {
+  table.number("size", o.size, 0.0, 10.0, "m", "how large");
+}
+void describe(OptionTable& table, OuterOptions& o) {
+  table.group("inner", o.inner);
+  table.integer("count", o.count, 1, 5, "", "how many");
+  table.flag("on", o.on, "whether");
+  table.choice("colour", o.colour, {"red", "green"}, "which");
+}
+
+TEST(OptionTable, NamesNestedFields) {
+  OuterOptions options;
+  const OptionTable table = optionTable(options);
+  ASSERT_NE(table.find("inner.size"), nullptr);
+  *std::get<double*>(table.find("inner.size")->value) = 4.0;
+  EXPECT_EQ(options.inner.size, 4.0);
+  std::get<ChoiceRef>(table.find("colour")->value).set(0);
+  EXPECT_EQ(options.colour, Colour::kRed);
+}
+
+TEST(OptionTable, RefusesValuesOutsideLimitsByName) {
+  OuterOptions options;
+  EXPECT_NO_THROW(checkOptions(options));
+  options.inner.size = -1.0;
+  try {
+    checkOptions(options);
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("inner.size"), std::string::npos);
+  }
+  options.inner.size = std::nan("");
+  EXPECT_THROW(checkOptions(options), UsageError);
+}
+
+TEST(Transform, HorizontalPartsRoundTrip) {
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const HorizontalParts parts{random.uniform(-3.1, 3.1), random.uniform(0.5, 1.5),
+                                random.uniform(0.5, 1.5), random.uniform(-0.3, 0.3)};
+    const HorizontalParts back = splitHorizontal(composeHorizontal(parts));
+    EXPECT_NEAR(back.yaw, parts.yaw, 1e-12);
+    EXPECT_NEAR(back.scale_x, parts.scale_x, 1e-12);
+    EXPECT_NEAR(back.scale_y, parts.scale_y, 1e-12);
+    EXPECT_NEAR(back.shear, parts.shear, 1e-12);
+  }
+}
+
+TEST(Transform, WrapsAngles) {
+  EXPECT_NEAR(wrapAngle(3.0 * std::numbers::pi), std::numbers::pi, 1e-12);
+  EXPECT_NEAR(wrapAngle(-0.1), -0.1, 1e-12);
+}
+
+TEST(Parallel, SumIsTheSameOnAnyNumberOfThreads) {
+  const auto sum = [] {
+    return parallelSum<double>(100000, 1000, 0.0, [](std::size_t begin, std::size_t end) {
+      double part = 0.0;
+      for (std::size_t i = begin; i < end; ++i) part += std::sin(static_cast<double>(i)) * 1e-3;
+      return part;
+    });
+  };
+  double one = 0.0;
+  {
+    const ThreadLimit limit(1);
+    one = sum();
+  }
+  EXPECT_EQ(one, sum());
+}
+
+TEST(Parallel, StopsWhenInterrupted) {
+  requestInterrupt();
+  EXPECT_THROW(parallelFor(10, [](std::size_t) {}), Interrupted);
+  requestInterrupt(false);
+  std::atomic<int> calls{0};
+  parallelFor(10, [&](std::size_t) { ++calls; });
+  EXPECT_EQ(calls, 10);
+}
+
+TEST(Random, IsTheSameEverywhere) {
+  Random random(42);
+  EXPECT_EQ(random.bits(), 13679457532755275413ULL);
+  double sum = 0.0;
+  for (int i = 0; i < 10000; ++i) sum += random.normal();
+  EXPECT_NEAR(sum / 10000, 0.0, 0.05);
+}
+
+}  // namespace
+}  // namespace agricolmap
