@@ -20,9 +20,9 @@ struct Levelling {
   /// Rigid: local coordinates after the initial guess → levelled frame. The ground plane becomes
   /// z = 0; x and y of the cloud's middle stay where they were.
   Eigen::Affine3d levelled_from_guess = Eigen::Affine3d::Identity();
-  double tilt = 0.0;      ///< angle between the ground's normal and z before levelling [rad]
+  double tilt = 0.0;       ///< angle between the ground's normal and z before levelling [rad]
   double roughness = 0.0;  ///< robust deviation of the ground cells from the plane [m]
-  std::size_t cells = 0;  ///< ground cells used
+  std::size_t cells = 0;   ///< ground cells used
 };
 
 /// Fits the ground plane of `cloud` in the frame `guess_from_local` and levels it.
