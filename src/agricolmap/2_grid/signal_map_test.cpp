@@ -8,7 +8,7 @@
 namespace agricolmap {
 namespace {
 
-/// 4 × 4 m at 2 cm: a slow hill plus rows 50 cm apart, greenness from the rows.
+/// 4 × 4 m at 2 cm: a gentle slope plus rows 50 cm apart, greenness from the rows.
 GridMap makeRows(bool with_hole) {
   GridMap map;
   map.frame = {{0, 0}, 0.02, 200, 200};
@@ -20,7 +20,7 @@ GridMap makeRows(bool with_hole) {
     for (int c = 0; c < 200; ++c) {
       const double y = 0.02 * (r + 0.5);
       const double row = std::sin(2 * std::numbers::pi * y / 0.5);
-      map.height(r, c) = static_cast<float>(0.2 * 0.02 * c + 0.05 * row);
+      map.height(r, c) = static_cast<float>(0.03 * 0.02 * c + 0.05 * row);
       map.exg(r, c) = static_cast<float>(0.3 + 0.1 * row);
       if (with_hole && r > 50 && r < 90 && c > 50 && c < 90) {
         map.weight(r, c) = 0.0F;
