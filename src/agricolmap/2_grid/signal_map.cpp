@@ -7,11 +7,6 @@
 
 namespace agricolmap {
 
-void describeDataTerm(OptionTable& table, DataTerm& term) {
-  table.choice("term", term, {"exg+height", "exg", "height", "rgb"},
-               "what is compared: Excess Green and height, one of them, or colour alone");
-}
-
 void describe(OptionTable& table, SignalOptions& options) {
   table.number("high_pass", options.high_pass, 0.05, 100.0, "m",
                "variation slower than this wavelength is taken out before maps are compared");

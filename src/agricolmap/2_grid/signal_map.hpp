@@ -4,15 +4,12 @@
 
 #include <cmath>
 
+#include "agricolmap/2_grid/data_term.hpp"
 #include "agricolmap/2_grid/grid_map.hpp"
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/raster.hpp"
 
 namespace agricolmap {
-
-/// Which of a map's terms data association and dense refinement use (paper Tab. IV).
-enum class DataTerm { kExgHeight, kExg, kHeight, kRgb };
-void describeDataTerm(OptionTable& table, DataTerm& term);
 
 struct SignalOptions {
   double high_pass = 0.8;  ///< wavelength above which variation is taken out [m]
