@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "agricolmap/4_associate/correlate/hypotheses.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap {

@@ -1,6 +1,7 @@
 // Stages 6 and 7: from placements to one refined pose.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,14 +40,13 @@ class PoseRefinement {
     SignalMap moving;
   };
   std::optional<RefinedPose> refineAt(const Level& level, const RefinedPose& start) const;
-  std::optional<RefinedPose> refineCpd(const RefinedPose& start) const;
 
   const GridMap& fixed_;
   const GridMap& moving_;
   const SearchSpace& space_;
   const RegistrationOptions& options_;
-  std::vector<Level> levels_;  ///< coarse to fine: 12, 6, 4, 2 cm for cells of 2 cm
-  EvidenceMeter meter_;        ///< at the second level
+  std::vector<Level> levels_;             ///< coarse to fine: 12, 6, 4, 2 cm for cells of 2 cm
+  std::unique_ptr<EvidenceMeter> meter_;  ///< at the second level
 };
 
 }  // namespace agricolmap

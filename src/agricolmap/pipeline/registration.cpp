@@ -43,6 +43,15 @@ PairFrames levelPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affin
   return frames;
 }
 
+struct Box2Sum {
+  Box2 box;
+  Box2Sum& operator+=(const Box2Sum& other) {
+    box.extend(other.box);
+    return *this;
+  }
+};
+
+/// Horizontal bounds of the cloud in the levelled frame.
 Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
   return parallelSum<Box2Sum>(
              cloud.size(), 1U << 16, {},
@@ -97,8 +106,7 @@ void gridPair(const Cloud& fixed, const Cloud& moving, const RegistrationOptions
         fixed_box.sizes().x(), fixed_box.sizes().y()));
   }
   result.space = searchSpace(moving_box, result.frames, options.prior);
-  const Box2 window =
-      reachableWindow(moving_box, result.space, 2.0 * options.signal.high_pass);
+  const Box2 window = reachableWindow(moving_box, result.space, 2.0 * options.signal.high_pass);
   result.fixed_map = makeGridMap(fixed, result.frames.levelled_from_fixed,
                                  window.intersection(fixed_box), options.grid);
   result.moving_map =
@@ -130,8 +138,8 @@ Eigen::Affine3d lift(const Eigen::Affine2d& pose, const VerticalResult& vertical
 /// Fills the transforms and their parts from the pose in the levelled frames.
 void compose(const Cloud& fixed, const Cloud& moving, Registration& result) {
   const Eigen::Affine3d levelled = lift(result.pose, result.vertical);
-  result.local_fixed_from_moving = result.frames.levelled_from_fixed.inverse() * levelled *
-                                   result.frames.levelled_from_moving;
+  result.local_fixed_from_moving =
+      result.frames.levelled_from_fixed.inverse() * levelled * result.frames.levelled_from_moving;
   result.fixed_from_moving = Eigen::Translation3d(fixed.origin) * result.local_fixed_from_moving *
                              Eigen::Translation3d(-moving.origin);
   const Eigen::Matrix2d& axes = result.space.scale_axes;
@@ -139,8 +147,7 @@ void compose(const Cloud& fixed, const Cloud& moving, Registration& result) {
   result.tilt = result.vertical.slope.array().atan().matrix();
   const Eigen::Vector3d middle(result.space.centre.x(), result.space.centre.y(), 0.0);
   result.shift = levelled * middle - middle;
-  result.centre =
-      fixed.origin + result.frames.levelled_from_fixed.inverse() * (levelled * middle);
+  result.centre = fixed.origin + result.frames.levelled_from_fixed.inverse() * (levelled * middle);
   result.has_transform = true;
 }
 
@@ -162,8 +169,8 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   // 2. Multimodal grid maps (Sec. III-A).
   times.run("grid", [&] { gridPair(fixed, moving, options, result); });
   // 3.–5. Data association: descriptors, flow and vote (Sec. III-B), or the correlation search.
-  result.association = makeAssociation(options)->associate(result.fixed_map, result.moving_map,
-                                                           result.space, times);
+  result.association =
+      makeAssociation(options)->associate(result.fixed_map, result.moving_map, result.space, times);
   result.counts.insert(result.counts.end(), result.association.counts.begin(),
                        result.association.counts.end());
   // 6. Affine with two scales per placement (Eq. 3); 7. refinement of the best.
@@ -171,8 +178,9 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   const std::optional<RefinedPose> refined =
       refinement.choose(result.association.placements, times, result.counts);
   if (!refined) {
-    result.verdict = rejectBecause("no placement of the moving map could be refined: the maps have "
-                                   "nothing coherent in common within the prior's limits");
+    result.verdict = rejectBecause(
+        "no placement of the moving map could be refined: the maps have "
+        "nothing coherent in common within the prior's limits");
     return result;
   }
   result.pose = refined->pose;
@@ -184,8 +192,8 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   // 8. Verdict.
   times.run("verdict", [&] {
     result.evidence = refinement.evidence(result.pose);
-    result.verdict = judge(result.evidence, result.overlap, result.pose, result.space,
-                           options.verdict);
+    result.verdict =
+        judge(result.evidence, result.overlap, result.pose, result.space, options.verdict);
   });
   if (result.vertical.status != VerticalStatus::kOk) {
     result.verdict = rejectBecause("the heights of the two maps do not fit one another");

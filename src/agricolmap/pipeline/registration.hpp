@@ -21,7 +21,8 @@ struct PairFrames {
   Levelling moving;
 };
 
-/// What a registration found. `status == kRejected` with `has_transform == false`: no answer at all.
+/// What a registration found. `status == kRejected` with `has_transform == false`: no answer at
+/// all.
 struct Registration {
   Verdict verdict;
   bool has_transform = false;
@@ -31,11 +32,12 @@ struct Registration {
   Eigen::Affine3d local_fixed_from_moving;
 
   // Parts, relative to the initial guess, at the middle of the moving map.
-  HorizontalParts parts;                    ///< yaw [rad], scales along the moving file's axes
+  HorizontalParts parts;  ///< yaw [rad], scales along the moving file's axes
   double vertical_scale = 1.0;
-  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();   ///< slope between the ground planes [rad], x and y
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< of the moving map's middle [m]
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero(); ///< that middle, fixed file coordinates [m]
+  Eigen::Vector2d tilt =
+      Eigen::Vector2d::Zero();  ///< slope between the ground planes [rad], x and y
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();   ///< of the moving map's middle [m]
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< that middle, fixed file coordinates [m]
 
   Evidence evidence;
   double overlap = 0.0;      ///< share of the moving map's cells that the fixed map sees

@@ -98,7 +98,7 @@ class CoarseTask {
   /// Adds the blocks' surfaces, each shifted to where the hypothesis puts its block, and keeps the
   /// best shift of the window.
   void bestShift(const Hypothesis& hypothesis, const std::vector<ComplexRaster>& surfaces,
-                  double deviation, std::vector<float>& sum, std::vector<Candidate>& best) const {
+                 double deviation, std::vector<float>& sum, std::vector<Candidate>& best) const {
     const Eigen::Matrix2d linear = linearOf(hypothesis, space_.scale_axes);
     const double cell = filter_.frame().cell;
     const int cols = filter_.fft().cols();

@@ -20,10 +20,6 @@ std::vector<double> coverInterval(double limit, double step) {
   return values;
 }
 
-double logScaleLimit(const PriorUncertainty& uncertainty) {
-  return -std::log(1.0 - uncertainty.scale);
-}
-
 std::vector<Hypothesis> coverSpace(const PriorUncertainty& uncertainty,
                                    const Eigen::Vector2d& half_extent, double tolerance) {
   const double yaw_limit = uncertainty.heading_deg * std::numbers::pi / 180.0;

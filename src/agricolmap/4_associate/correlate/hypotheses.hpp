@@ -21,11 +21,6 @@ Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& sc
 /// Evenly spaced values that cover [−limit, limit] with no point further than step/2 from one.
 std::vector<double> coverInterval(double limit, double step);
 
-/// Half-width of the interval of log-scales: a file whose axis is off by a factor of 1 ± scale
-/// needs a correction between 1/(1 + scale) and 1/(1 − scale); ±log 1/(1 − scale) covers both
-/// readings.
-double logScaleLimit(const PriorUncertainty& uncertainty);
-
 /// All combinations such that a point `half_extent` from the centre (per scale axis; their norm for
 /// the heading) is nowhere off by more than `tolerance` per parameter [m].
 std::vector<Hypothesis> coverSpace(const PriorUncertainty& uncertainty,

@@ -12,12 +12,12 @@
 namespace agricolmap::testing {
 
 struct TestField {
-  double size = 16.0;       ///< side of the field [m]
-  double rows = 0.45;       ///< between rows [m]
-  double plants = 0.20;     ///< between plants of a row [m]
-  double leaf = 0.025;      ///< deviation of a leaf [m]
-  double gaps = 0.12;       ///< share of missing plants
-  double noise = 0.03;      ///< of ExG in a view
+  double size = 16.0;           ///< side of the field [m]
+  double rows = 0.45;           ///< between rows [m]
+  double plants = 0.20;         ///< between plants of a row [m]
+  double leaf = 0.025;          ///< deviation of a leaf [m]
+  double gaps = 0.12;           ///< share of missing plants
+  double noise = 0.03;          ///< of ExG in a view
   double height_noise = 0.004;  ///< [m]
   std::uint64_t seed = 1;
 };
@@ -57,8 +57,7 @@ inline Truth growField(const TestField& field) {
   for (double y = 0.5 * field.rows; y < field.size; y += field.rows) {
     for (double x = 0.0; x < field.size; x += field.plants) {
       if (random.chance(field.gaps)) continue;
-      const Eigen::Vector2d plant(x + random.normal(0.25 * field.plants),
-                                  y + random.normal(0.02));
+      const Eigen::Vector2d plant(x + random.normal(0.25 * field.plants), y + random.normal(0.02));
       const double vigour = random.uniform(0.6, 1.2);
       for (int leaf = 0; leaf < 5; ++leaf) {
         const double angle = random.uniform(0.0, 6.2831853);
@@ -95,8 +94,8 @@ inline GridMap viewOf(const Truth& truth, const TestField& field, const Box2& wi
       map.weight[i] = 1.0F;
       const float green = truth.sample(truth.green, p);
       map.exg[i] = green + static_cast<float>(random.normal(field.noise));
-      map.height[i] = truth.sample(truth.height, p) +
-                      static_cast<float>(random.normal(field.height_noise));
+      map.height[i] =
+          truth.sample(truth.height, p) + static_cast<float>(random.normal(field.height_noise));
       const auto level = [&](float value) {
         return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F));
       };
