@@ -189,6 +189,32 @@ bool allowed(const ScaledRotation& pose, const PriorUncertainty& u) {
          (pose.scale.array() - 1.0).abs().maxCoeff() <= u.scale + 0.05;
 }
 
+/// Best placements, each mostly of matches that no better one explains: between two real ones, maps
+/// that take a part of each also find support.
+std::vector<VotedPlacement> distinct(std::vector<VotedPlacement> drawn, std::size_t matches,
+                                     const PriorUncertainty& uncertainty,
+                                     const VoteOptions& options) {
+  std::stable_sort(drawn.begin(), drawn.end(),
+                   [](const VotedPlacement& a, const VotedPlacement& b) {
+                     return a.inliers.size() > b.inliers.size();
+                   });
+  std::vector<VotedPlacement> result;
+  std::vector<bool> taken(matches, false);
+  for (VotedPlacement& placement : drawn) {
+    if (result.size() == static_cast<std::size_t>(options.placements)) break;
+    if (!allowed(placement.pose, uncertainty)) continue;
+    const auto own = static_cast<std::size_t>(
+        std::count_if(placement.inliers.begin(), placement.inliers.end(),
+                      [&](std::uint32_t i) { return !taken[i]; }));
+    if (own < static_cast<std::size_t>(options.least) || 2 * own < placement.inliers.size()) {
+      continue;
+    }
+    for (const std::uint32_t i : placement.inliers) taken[i] = true;
+    result.push_back(std::move(placement));
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
@@ -238,24 +264,7 @@ std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const S
   parallelFor(starts.size(), [&](std::size_t i) {
     drawn[i] = drawIn(matches, starts[i], axes, 2.0 * bin, options.tolerance * unit);
   });
-  std::stable_sort(drawn.begin(), drawn.end(),
-                   [](const VotedPlacement& a, const VotedPlacement& b) {
-                     return a.inliers.size() > b.inliers.size();
-                   });
-  std::vector<VotedPlacement> result;
-  for (VotedPlacement& placement : drawn) {
-    if (result.size() == static_cast<std::size_t>(options.placements) ||
-        placement.inliers.size() < static_cast<std::size_t>(options.least)) {
-      break;
-    }
-    if (!allowed(placement.pose, space.uncertainty)) continue;
-    const bool known = std::any_of(result.begin(), result.end(), [&](const VotedPlacement& r) {
-      return farthestCorner(r.pose.fixed_from_moving, placement.pose.fixed_from_moving, pairs,
-                            axes) < bin;
-    });
-    if (!known) result.push_back(std::move(placement));
-  }
-  return result;
+  return distinct(std::move(drawn), matches.size(), space.uncertainty, options);
 }
 
 }  // namespace agricolmap
