@@ -119,12 +119,12 @@ Rgb narrow(const PointBlock& block, std::size_t i, float scale) {
 /// Large arrays are touched for the first time here; huge pages save most of the page faults.
 template <typename T>
 void resizeInHugePages(std::vector<T>& values, std::size_t size) {
-  constexpr std::uintptr_t kHuge = 1U << 21;
+  constexpr std::size_t kHuge = 1U << 21;
   values.reserve(size);
-  const auto address = reinterpret_cast<std::uintptr_t>(values.data());
-  const std::uintptr_t begin = (address + kHuge - 1) / kHuge * kHuge;
-  const std::uintptr_t end = (address + size * sizeof(T)) / kHuge * kHuge;
-  if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  auto* const first = reinterpret_cast<std::byte*>(values.data());
+  const std::size_t skip = (kHuge - reinterpret_cast<std::uintptr_t>(first) % kHuge) % kHuge;
+  const std::size_t bytes = size * sizeof(T);
+  if (bytes > skip + kHuge) ::madvise(first + skip, (bytes - skip) / kHuge * kHuge, MADV_HUGEPAGE);
   values.resize(size);
 }
 
