@@ -33,7 +33,8 @@ std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level,
   if (dense.status != RefineStatus::kConverged) return std::nullopt;
   RefinedPose refined = start;
   refined.pose = dense.fixed_from_moving;
-  refined.overlap = dense.overlap;
+  // Finer maps may be sparser than their cells: what overlaps is told at the ranking level.
+  if (level.factor >= kFactors[kRankingLevel]) refined.overlap = dense.overlap;
   refined.correlation = dense.correlation;
   return refined;
 }
