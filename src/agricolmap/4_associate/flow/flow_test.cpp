@@ -160,11 +160,11 @@ TEST(MatchCost, ComparesKnownPointsOnly) {
   fixed.bytes.assign(DescriptorMap::kStride, 0);
   fixed.known = {DescriptorMap::kDaisyBits | DescriptorMap::kFpfhBit};
   DescriptorMap moving = fixed;
-  for (int k = 0; k < kDaisySize; ++k) fixed.bytes[static_cast<std::size_t>(k)] = 40;
+  for (int k = 0; k < kDaisySize; ++k) fixed.bytes[static_cast<std::size_t>(k)] = 33;
   const CostOptions options;
   EXPECT_NEAR(MatchCost(fixed, moving, options)(0, 0), 1.0F, 1e-5F);
   // Half of the points say the same, the others are unknown.
-  for (std::size_t k = 0; k < kDaisySize / 2; ++k) moving.bytes[k] = 40;
+  for (std::size_t k = 0; k < kDaisySize / 2; ++k) moving.bytes[k] = 33;
   moving.known = {0x00FFU | DescriptorMap::kFpfhBit};
   EXPECT_EQ(MatchCost(fixed, moving, options)(0, 0), 0.0F);
   moving.bytes[DescriptorMap::kFpfhOffset + 32] = 200;
