@@ -169,8 +169,7 @@ void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_ro
 void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMap& map) {
   for (int row = first_row; row < first_row + rows; ++row) {
     for (int col = 0; col < map.frame.cols; ++col) {
-      const CellSum& sum =
-          sums[static_cast<std::size_t>(row - first_row) * map.frame.cols + col];
+      const CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * map.frame.cols + col];
       if (sum.weight <= 0.0F) continue;
       const std::size_t i = map.weight.index(row, col);
       const float scale = 1.0F / sum.weight;

@@ -1,0 +1,51 @@
+// Stage 3: dense descriptors of a grid map, at several resolutions.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "agricolmap/2_grid/data_term.hpp"
+#include "agricolmap/2_grid/grid_map.hpp"
+#include "agricolmap/3_describe/daisy.hpp"
+#include "agricolmap/3_describe/fpfh.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+struct DescribeOptions {
+  DataTerm term = DataTerm::kExgHeight;
+  DaisyOptions daisy;
+  FpfhOptions fpfh;
+};
+void describe(OptionTable& table, DescribeOptions& options);
+
+/// Descriptors of every cell, as bytes. A cell's `kStride` bytes are DAISY's 128 (daisy.hpp),
+/// FPFH's 33 (fpfh.hpp) and 15 of padding, all zero where there is nothing to describe.
+struct DescriptorMap {
+  static constexpr int kFpfhOffset = kDaisySize;
+  static constexpr int kStride = 176;
+  /// Bits 0–15 of `known`: DAISY's sample points that lie on known ground; bit 16: FPFH.
+  static constexpr std::uint32_t kDaisyBits = 0xFFFF;
+  static constexpr std::uint32_t kFpfhBit = 1U << 16;
+
+  GridFrame frame;
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint32_t> known;  ///< per cell
+
+  /// True where the cell's own surroundings are known; single empty cells are bridged.
+  bool describes(std::size_t cell) const { return (known[cell] & (1U | kFpfhBit)) != 0; }
+  std::size_t index(int row, int col) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.cols) +
+           static_cast<std::size_t>(col);
+  }
+  const std::uint8_t* daisy(std::size_t cell) const { return bytes.data() + cell * kStride; }
+  const std::uint8_t* fpfh(std::size_t cell) const { return daisy(cell) + kFpfhOffset; }
+};
+
+/// Descriptors of the part of `map` in `window` (levelled frame [m]) at `levels` resolutions,
+/// finest first, each with half the resolution of the one before. Empty when the window misses the
+/// map.
+std::vector<DescriptorMap> describeMap(const GridMap& map, const Box2& window, int levels,
+                                       const DescribeOptions& options);
+
+}  // namespace agricolmap

@@ -1,0 +1,35 @@
+// Where the initial guess allows a point to move.
+#pragma once
+
+#include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/core/random.hpp"
+
+namespace agricolmap {
+
+/// The maps p = c + t + M·(q − c), M = R(yaw)·A·diag(s)·Aᵀ, that PriorUncertainty allows: c the
+/// centre, A the scale axes, |t| ≤ translation. Displacements therefore spread with the lever arm.
+class Reach {
+ public:
+  explicit Reach(const SearchSpace& space);
+
+  /// Fixed point of moving point `q` under a random allowed map.
+  Eigen::Vector2d sampleForward(const Eigen::Vector2d& q, Random& random) const;
+  /// Moving point of fixed point `p` under a random allowed map.
+  Eigen::Vector2d sampleBackward(const Eigen::Vector2d& p, Random& random) const;
+  /// Bounding box of all fixed points that `q` can have.
+  Box2 forwardBox(const Eigen::Vector2d& q) const;
+  /// Bounding box of all moving points that `p` can have.
+  Box2 backwardBox(const Eigen::Vector2d& p) const;
+
+ private:
+  Eigen::Matrix2d linear(double yaw, double scale_x, double scale_y) const;
+  Eigen::Matrix2d randomLinear(Random& random) const;
+  Eigen::Vector2d randomShift(Random& random) const;
+  template <typename Map>
+  Box2 boxOver(const Map& map) const;
+
+  SearchSpace space_;
+  double yaw_;
+};
+
+}  // namespace agricolmap

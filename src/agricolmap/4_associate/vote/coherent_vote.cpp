@@ -1,0 +1,270 @@
+#include "agricolmap/4_associate/vote/coherent_vote.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/transform.hpp"
+
+namespace agricolmap {
+
+void describe(OptionTable& table, VoteOptions& options) {
+  table.number("step", options.step, 0.1, 100.0, "cells", "t_f in the paper: step of the vote");
+  table.number("coarse", options.coarse, 1.0, 100.0, "t_f",
+               "step of the search over heading and scales");
+  table.number("tolerance", options.tolerance, 0.5, 100.0, "t_f",
+               "largest distance of a coherent match from its placement");
+  table.integer("placements", options.placements, 1, 100, "", "distinct placements at most");
+  table.integer("least", options.least, 3, 1000000, "", "votes that a placement needs");
+}
+
+namespace {
+
+constexpr std::size_t kCandidates = 32;  ///< bins drawn in to placements
+constexpr int kDrawSteps = 12;
+constexpr double kWidestBins = 2048.0;  ///< per axis, a guard against absurd searches
+
+/// Matches about a pivot: single precision is plenty for metres.
+struct Pairs {
+  Eigen::Vector2d pivot;
+  std::vector<Eigen::Vector2f> q;  ///< moving − pivot
+  std::vector<Eigen::Vector2f> p;  ///< fixed − pivot
+  Eigen::Vector2d half_extent;     ///< of q along the axes [m]
+};
+
+Pairs pairsOf(std::span<const Match> matches, const Eigen::Matrix2d& axes) {
+  Pairs pairs;
+  Box2 box;
+  for (const Match& match : matches) box.extend(axes.transpose() * match.moving);
+  pairs.pivot = axes * box.center();
+  pairs.half_extent = 0.5 * box.sizes();
+  for (const Match& match : matches) {
+    pairs.q.push_back((match.moving - pairs.pivot).cast<float>());
+    pairs.p.push_back((match.fixed - pairs.pivot).cast<float>());
+  }
+  return pairs;
+}
+
+struct Hypothesis {
+  double yaw;
+  Eigen::Vector2d scale;
+};
+
+/// −limit…limit in equal steps of at most `step`, odd in number.
+std::vector<double> lattice(double limit, double step) {
+  const int half = static_cast<int>(std::ceil(limit / step));
+  std::vector<double> values;
+  for (int k = -half; k <= half; ++k) values.push_back(half > 0 ? limit * k / half : 0.0);
+  return values;
+}
+
+std::vector<Hypothesis> hypotheses(const PriorUncertainty& u, const Eigen::Vector2d& half_extent,
+                                   double step) {
+  const auto stepFor = [&](double arm) { return step / std::max(arm, step); };
+  std::vector<Hypothesis> result;
+  const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0;
+  for (const double yaw : lattice(yaw_limit, stepFor(half_extent.norm()))) {
+    for (const double x : lattice(u.scale, stepFor(half_extent.x()))) {
+      for (const double y : lattice(u.scale, stepFor(half_extent.y()))) {
+        result.push_back({yaw, Eigen::Vector2d(1.0 + x, 1.0 + y)});
+      }
+    }
+  }
+  return result;
+}
+
+Eigen::Matrix2d linearOf(const Hypothesis& h, const Eigen::Matrix2d& axes) {
+  return rotation2(h.yaw) * axes * h.scale.asDiagonal() * axes.transpose();
+}
+
+/// The fullest 2 × 2 bins of a hypothesis and their middle.
+struct Peak {
+  int votes = 0;
+  std::size_t hypothesis = 0;
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< of the pivot [m]
+};
+
+/// Votes of all matches for the pivot's displacement under one linear map.
+class ShiftVote {
+ public:
+  ShiftVote(const Pairs& pairs, const Box2& window, double bin)
+      : pairs_(pairs), corner_(window.min().cast<float>()), bin_(static_cast<float>(bin)) {
+    const Eigen::Array2d count = (window.sizes().array() / bin).min(kWidestBins);
+    cols_ = static_cast<int>(count.x()) + 2;
+    rows_ = static_cast<int>(count.y()) + 2;
+  }
+
+  Peak vote(const Eigen::Matrix2d& linear, std::vector<std::uint16_t>& bins) const {
+    bins.assign(static_cast<std::size_t>(rows_) * cols_, 0);
+    const Eigen::Matrix2f m = linear.cast<float>();
+    const float scale = 1.0F / bin_;
+    for (std::size_t i = 0; i < pairs_.q.size(); ++i) {
+      const Eigen::Vector2f place = (pairs_.p[i] - m * pairs_.q[i] - corner_) * scale;
+      const int col = static_cast<int>(std::floor(place.x()));
+      const int row = static_cast<int>(std::floor(place.y()));
+      if (col < 0 || row < 0 || col >= cols_ || row >= rows_) continue;
+      std::uint16_t& bin = bins[static_cast<std::size_t>(row) * cols_ + col];
+      if (bin < 0xFFFF) ++bin;
+    }
+    Peak best;
+    for (int row = 0; row + 1 < rows_; ++row) {
+      const std::uint16_t* here = bins.data() + static_cast<std::size_t>(row) * cols_;
+      const std::uint16_t* above = here + cols_;
+      for (int col = 0; col + 1 < cols_; ++col) {
+        const int votes = here[col] + here[col + 1] + above[col] + above[col + 1];
+        if (votes <= best.votes) continue;
+        best.votes = votes;
+        best.shift = (corner_ + bin_ * Eigen::Vector2f(static_cast<float>(col + 1),
+                                                       static_cast<float>(row + 1)))
+                         .cast<double>();
+      }
+    }
+    return best;
+  }
+
+ private:
+  const Pairs& pairs_;
+  Eigen::Vector2f corner_;
+  float bin_;
+  int rows_ = 0;
+  int cols_ = 0;
+};
+
+/// Largest distance between where two placements put the corners of the moving matches [m].
+double farthestCorner(const Eigen::Affine2d& a, const Eigen::Affine2d& b, const Pairs& pairs,
+                      const Eigen::Matrix2d& axes) {
+  double farthest = 0.0;
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      const Eigen::Vector2d corner =
+          pairs.pivot + axes * Eigen::Vector2d(x, y).cwiseProduct(pairs.half_extent);
+      farthest = std::max(farthest, (a * corner - b * corner).norm());
+    }
+  }
+  return farthest;
+}
+
+std::vector<std::uint32_t> within(std::span<const Match> matches, const Eigen::Affine2d& pose,
+                                  double radius) {
+  std::vector<std::uint32_t> result;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if ((pose * matches[i].moving - matches[i].fixed).squaredNorm() <= radius * radius) {
+      result.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  return result;
+}
+
+/// Alternates selection within a shrinking radius and weighted fits (Tukey's biweight).
+VotedPlacement drawIn(std::span<const Match> matches, const Eigen::Affine2d& start,
+                      const Eigen::Matrix2d& axes, double wide, double tolerance) {
+  VotedPlacement placement;
+  Eigen::Affine2d pose = start;
+  std::vector<Match> chosen;
+  std::vector<double> weights;
+  for (int step = 0; step < kDrawSteps; ++step) {
+    const double radius = std::max(tolerance, wide * std::pow(0.7, step));
+    chosen.clear();
+    weights.clear();
+    for (const std::uint32_t i : within(matches, pose, radius)) {
+      const double r = (pose * matches[i].moving - matches[i].fixed).norm() / radius;
+      chosen.push_back(matches[i]);
+      weights.push_back((1.0 - r * r) * (1.0 - r * r));
+    }
+    const auto fit = fitScaledRotation(chosen, weights, axes);
+    if (!fit) return {};
+    placement.pose = *fit;
+    pose = fit->fixed_from_moving;
+  }
+  placement.inliers = within(matches, pose, tolerance);
+  return placement;
+}
+
+/// True inside what the initial guess allows, with a little play for the fit.
+bool allowed(const ScaledRotation& pose, const PriorUncertainty& u) {
+  const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0 + 0.05;
+  return std::abs(pose.yaw) <= yaw_limit &&
+         (pose.scale.array() - 1.0).abs().maxCoeff() <= u.scale + 0.05;
+}
+
+/// Best placements, each mostly of matches that no better one explains: between two real ones, maps
+/// that take a part of each also find support.
+std::vector<VotedPlacement> distinct(std::vector<VotedPlacement> drawn, std::size_t matches,
+                                     const PriorUncertainty& uncertainty,
+                                     const VoteOptions& options) {
+  std::stable_sort(drawn.begin(), drawn.end(),
+                   [](const VotedPlacement& a, const VotedPlacement& b) {
+                     return a.inliers.size() > b.inliers.size();
+                   });
+  std::vector<VotedPlacement> result;
+  std::vector<bool> taken(matches, false);
+  for (VotedPlacement& placement : drawn) {
+    if (result.size() == static_cast<std::size_t>(options.placements)) break;
+    if (!allowed(placement.pose, uncertainty)) continue;
+    const auto own = static_cast<std::size_t>(
+        std::count_if(placement.inliers.begin(), placement.inliers.end(),
+                      [&](std::uint32_t i) { return !taken[i]; }));
+    if (own < static_cast<std::size_t>(options.least) || 2 * own < placement.inliers.size()) {
+      continue;
+    }
+    for (const std::uint32_t i : placement.inliers) taken[i] = true;
+    result.push_back(std::move(placement));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
+                                         double cell, const VoteOptions& options) {
+  checkOptions(options);
+  if (matches.size() < static_cast<std::size_t>(options.least)) return {};
+  const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
+  const double unit = options.step * cell;
+  const double bin = options.coarse * unit;
+  const Pairs pairs = pairsOf(matches, axes);
+  const std::vector<Hypothesis> all = hypotheses(space.uncertainty, pairs.half_extent, bin);
+
+  // The pivot moves by the translation plus what heading and scales do to its arm from the centre.
+  const double arm = (pairs.pivot - space.centre).norm();
+  const double reach =
+      space.uncertainty.translation +
+      arm * (space.uncertainty.scale +
+             std::min(2.0, space.uncertainty.heading_deg * std::numbers::pi / 180.0)) +
+      bin;
+  const Box2 window(Eigen::Vector2d::Constant(-reach), Eigen::Vector2d::Constant(reach));
+  const ShiftVote vote(pairs, window, bin);
+  std::vector<Peak> peaks(all.size());
+  parallelFor(
+      all.size(),
+      [&](std::size_t i) {
+        thread_local std::vector<std::uint16_t> bins;
+        peaks[i] = vote.vote(linearOf(all[i], axes), bins);
+        peaks[i].hypothesis = i;
+      },
+      8);
+  std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) {
+    return a.votes != b.votes ? a.votes > b.votes : a.hypothesis < b.hypothesis;
+  });
+
+  std::vector<Eigen::Affine2d> starts;
+  for (const Peak& peak : peaks) {
+    if (starts.size() == kCandidates || peak.votes < options.least) break;
+    Eigen::Affine2d pose;
+    pose.linear() = linearOf(all[peak.hypothesis], axes);
+    pose.translation() = pairs.pivot + peak.shift - pose.linear() * pairs.pivot;
+    const bool known = std::any_of(starts.begin(), starts.end(), [&](const Eigen::Affine2d& s) {
+      return farthestCorner(s, pose, pairs, axes) < 3.0 * bin;
+    });
+    if (!known) starts.push_back(pose);
+  }
+  std::vector<VotedPlacement> drawn(starts.size());
+  parallelFor(starts.size(), [&](std::size_t i) {
+    drawn[i] = drawIn(matches, starts[i], axes, 2.0 * bin, options.tolerance * unit);
+  });
+  return distinct(std::move(drawn), matches.size(), space.uncertainty, options);
+}
+
+}  // namespace agricolmap
