@@ -31,11 +31,11 @@ enum class CpdModel {
 struct CpdOptions {
   CpdModel model = CpdModel::kAffine;
   double sigma_start = 0.15;    ///< σ of the first iteration: how wrong the start may be [m]
-  double sigma_end = 0.03;      ///< least σ [m]
+  double sigma_end = 0.025;     ///< least σ [m]
   double decay = 0.85;          ///< most of σ that an iteration may leave
   double sigma_height = 0.15;   ///< deviation of the height difference [m]; 0: heights unused
   bool vertical_scale = false;  ///< estimate a vertical scale beside the offset
-  double outlier_share = 0.2;   ///< w, prior share of moving points without a counterpart
+  double outlier_share = 0.4;   ///< w, prior share of moving points without a counterpart
   bool weights = true;          ///< greener points count more
   int max_points = 40000;       ///< per cloud; more are merged to squares
   int max_iterations = 80;
