@@ -41,7 +41,7 @@ RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Glob
   RegistrationOptions options = preset(arguments.preset);
   options.flow.seed = globals.seed;
   options.affine.seed = globals.seed;
-  const OptionTable table = optionTable(options);
+  OptionTable table = optionTable(options);
   if (!arguments.config.empty()) loadYaml(arguments.config, table);
   arguments.flags.apply(table);
   return options;
@@ -110,7 +110,8 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   });
   std::vector<std::string> pictures;
   if (!arguments.no_pictures) {
-    pictures = times.run("pictures", [&] { return writePictures(output.path("").parent_path(), result); });
+    pictures =
+        times.run("pictures", [&] { return writePictures(output.path("").parent_path(), result); });
   }
   info.version = AGRICOLMAP_VERSION;
   info.seed = globals.seed;

@@ -48,8 +48,9 @@ class Progress {
   bool active_;
 };
 
-/// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside each
-/// cloud (one that has none stands in world coordinates); else identity. Says which in `source`.
+/// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside
+/// each cloud (one that has none stands in world coordinates); else identity. Says which in
+/// `source`.
 Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
                              const std::filesystem::path& moving, const std::string& prior_file,
                              std::string& source);

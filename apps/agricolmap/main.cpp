@@ -1,9 +1,9 @@
 // The command line: verbs, global flags, and errors as exit codes.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <new>
 #include <vector>
 

@@ -1,7 +1,8 @@
 #include "option_flags.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "agricolmap/config/text.hpp"
 
@@ -9,21 +10,16 @@ namespace agricolmap {
 namespace {
 
 std::string helpOf(const OptionField& field) {
-  std::string unit = field.unit.empty() ? "" : " " + field.unit;
-  if (const auto* choice = std::get_if<ChoiceRef>(&field.value)) {
-    return fmt::format("{} {{{}}} [{}]", field.help, fmt::join(choice->names, "|"),
-                       textOf(field));
-  }
-  if (std::holds_alternative<bool*>(field.value)) {
-    return fmt::format("{} [{}]", field.help, textOf(field));
-  }
-  return fmt::format("{} [{}{}; {} to {}]", field.help, textOf(field), unit, field.low, field.high);
+  return fmt::format("{} [{}{}{}; {}]", field.help, optionText(field),
+                     field.unit.empty() ? "" : " ", field.unit, limitsText(field));
 }
 
 }  // namespace
 
-void OptionFlags::addTo(CLI::App& app, const OptionTable& table, const std::string& group) {
+void OptionFlags::addTo(CLI::App& app, const OptionTable& table, const std::string& group,
+                        const std::vector<std::string>& left_out) {
   for (const OptionField& field : table.fields()) {
+    if (std::find(left_out.begin(), left_out.end(), field.path) != left_out.end()) continue;
     auto text = std::make_shared<std::string>();
     texts_[field.path] = text;
     CLI::Option* option = app.add_option("--" + field.path, *text, helpOf(field));
@@ -38,7 +34,7 @@ void OptionFlags::addTo(CLI::App& app, const OptionTable& table, const std::stri
 void OptionFlags::apply(const OptionTable& table) const {
   for (const auto& [path, text] : texts_) {
     const OptionField* field = table.find(path);
-    if (field != nullptr && !text->empty()) setFromText(*field, *text, "--" + path);
+    if (field != nullptr && !text->empty()) parseOption(*field, *text)();
   }
   table.check();
 }

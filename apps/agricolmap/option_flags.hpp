@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "agricolmap/core/options.hpp"
 
@@ -14,8 +15,10 @@ namespace agricolmap {
 /// file have been read: flags win over both.
 class OptionFlags {
  public:
-  /// Adds a flag per field of `table`, with unit, limits and default in its help.
-  void addTo(CLI::App& app, const OptionTable& table, const std::string& group);
+  /// Adds a flag per field of `table` but those in `left_out`, with unit, limits and default in its
+  /// help.
+  void addTo(CLI::App& app, const OptionTable& table, const std::string& group,
+             const std::vector<std::string>& left_out = {});
   /// Writes what was given into `table`; throws UsageError for values that do not parse or lie
   /// outside their limits.
   void apply(const OptionTable& table) const;
