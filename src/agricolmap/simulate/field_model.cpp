@@ -69,6 +69,21 @@ Species speciesOf(Crop crop) {
   return Species::kSoybean;
 }
 
+float leafDepthOf(Species species) {
+  switch (species) {
+    case Species::kSoybean:
+      return 0.10F;
+    case Species::kBeet:
+      return 0.06F;
+    case Species::kWheat:
+      return 0.05F;
+    case Species::kMaize:
+      return 0.14F;
+    default:
+      return 0.03F;
+  }
+}
+
 FieldModel::FieldModel(Crop crop, const FieldOptions& options, std::uint64_t seed)
     : species_(speciesOf(crop)), options_(options), seed_(seed) {
   constexpr double kDegree = std::numbers::pi / 180.0;

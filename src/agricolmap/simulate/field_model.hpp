@@ -34,11 +34,15 @@ struct Plant {
 /// How far a plant of size 1 reaches from its place [m].
 double reachOf(Species species);
 Species speciesOf(Crop crop);
+/// How deep the leaves of a stand lie one above the other where they do: what hides the ground from
+/// a low camera [m].
+float leafDepthOf(Species species);
 
 class FieldModel {
  public:
   FieldModel(Crop crop, const FieldOptions& options, std::uint64_t seed);
 
+  Species species() const { return species_; }
   double rowHeading() const { return heading_; }
   const FieldOptions& options() const { return options_; }
   std::uint64_t seed() const { return seed_; }

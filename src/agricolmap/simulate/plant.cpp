@@ -109,9 +109,9 @@ Leaf wheatLeaf(Random& r, float order, float around) {
   Leaf leaf;
   leaf.shape = LeafShape::kBlade;
   leaf.azimuth = around + normal(r, 1.0);
-  leaf.elevation = uniform(r, 0.9, 1.45);
-  leaf.bend = uniform(r, 0.6, 1.9);
-  leaf.length = uniform(r, 0.13, 0.21);
+  leaf.elevation = uniform(r, 1.0, 1.5);
+  leaf.bend = uniform(r, 0.3, 1.5);
+  leaf.length = uniform(r, 0.11, 0.19);
   leaf.width = uniform(r, 0.008, 0.012);
   leaf.base_z = 0.02F + 0.09F * order;
   leaf.roll = normal(r, 0.4);
@@ -206,11 +206,13 @@ Foliage growFoliage(const Plant& plant, const VisitPlants& visit) {
                              ? uniform(own, 0.0, 2.0 * std::numbers::pi)
                              : phase;
     Leaf leaf = drawLeaf(plant.species, own, i, foliage.count, turned);
-    leaf.shade = std::clamp(1.0F + normal(own, 0.10), 0.6F, 1.4F);
+    const float age = normal(own, 0.10);
     leaf.length *= size;
     leaf.width *= size;
     leaf.base_z *= size;
     const float top = leaf.base_z + 0.6F * leaf.length * std::sin(std::max(0.1F, leaf.elevation));
+    // Leaves deep in the stand get less light and are darker themselves.
+    leaf.shade = std::clamp(0.62F + 0.38F * std::min(1.3F, top / height) + age, 0.4F, 1.3F);
     const float flutter = 0.4F * static_cast<float>(visit.wind);
     leaf.shift = std::min(1.0F, top / height) *
                  (sway + flutter * Eigen::Vector2f(normal(visitor, 1.0), normal(visitor, 1.0)));

@@ -26,10 +26,15 @@ constexpr std::uint64_t kFine = 71;
 class SoilPainter {
  public:
   SoilPainter(const FieldModel& field, const Visit& visit, const Window& window, const Tile& tile)
-      : field_(&field),
+      : clod_height_(static_cast<float>(field.options().clods)),
         shared_(static_cast<float>(std::sqrt(1.0 - visit.leaf_unshared))),
         own_(static_cast<float>(std::sqrt(visit.leaf_unshared))),
-        box_(boundsOf(window, tile)),
+        box_(boundsOf(window, tile, [](const Eigen::Vector2d& p) { return p; })),
+        row_box_(boundsOf(window, tile,
+                          [&](const Eigen::Vector2d& p) { return field.rowCoordinates(p); })),
+        tools_(hashBits(field.seed() + kTools, 1), row_box_.low.x() / kStripeLength,
+               row_box_.high.x() / kStripeLength, row_box_.low.y() / kStripeWidth,
+               row_box_.high.y() / kStripeWidth),
         coarse_clods_(make(field.seed() + kClods, 0.11)),
         clods_(make(field.seed() + kClods + 1, 0.045)),
         own_clods_(make(visit.seed + kClods + 1, 0.045)),
@@ -42,14 +47,13 @@ class SoilPainter {
         tint_(make(field.seed() + kFine + 1, 0.07)),
         own_tint_(make(visit.seed + kFine + 1, 0.07)) {}
 
-  /// `smooth` is the soil's height without clods.
-  void paint(const Eigen::Vector2d& point, float smooth, Cell& cell, float& ground) const {
-    const Eigen::Vector2d uv = field_->rowCoordinates(point);
-    const float track = field_->wheelTrack(uv.y());
+  /// `uv` are the point's coordinates along and across the rows, `smooth` is the soil's height
+  /// without clods, `track` 1 in wheel tracks.
+  void paint(const Eigen::Vector2d& point, const Eigen::Vector2d& uv, float smooth, float track,
+             Cell& cell, float& ground) const {
     // Wheels flatten the clods, harrows leave stripes.
-    const float rough = static_cast<float>(field_->options().clods) * (1.0F - 0.6F * track);
-    const float stripes =
-        noiseAt(field_->seed() + kTools, uv.x() / 1.5, uv.y() / 0.07) * (1.0F - track);
+    const float rough = clod_height_ * (1.0F - 0.6F * track);
+    const float stripes = tools_(uv.x() / kStripeLength, uv.y() / kStripeWidth) * (1.0F - track);
     const float coarse = at(coarse_clods_, point, 0.11);
     const float clods = mix(clods_, own_clods_, point, 0.045);
     const float crumbs = mix(crumbs_, own_crumbs_, point, 0.018);
@@ -72,11 +76,12 @@ class SoilPainter {
     Eigen::Vector2d low;
     Eigen::Vector2d high;
   };
-  static Bounds boundsOf(const Window& window, const Tile& tile) {
+  template <typename Map>
+  static Bounds boundsOf(const Window& window, const Tile& tile, const Map& map) {
     Bounds box{Eigen::Vector2d::Constant(1e30), Eigen::Vector2d::Constant(-1e30)};
     for (const int c : {tile.col0, tile.col1}) {
       for (const int r : {tile.row0, tile.row1}) {
-        const Eigen::Vector2d corner = window.field(window.cell * Eigen::Vector2d(c, r));
+        const Eigen::Vector2d corner = map(window.field(window.cell * Eigen::Vector2d(c, r)));
         box.low = box.low.cwiseMin(corner);
         box.high = box.high.cwiseMax(corner);
       }
@@ -98,10 +103,14 @@ class SoilPainter {
     return value;
   }
 
-  const FieldModel* field_;
+  static constexpr double kStripeLength = 1.5;  // of the harrow's marks [m]
+  static constexpr double kStripeWidth = 0.07;
+  float clod_height_;
   float shared_;
   float own_;
   Bounds box_;
+  Bounds row_box_;
+  NoiseTile tools_;
   NoiseTile coarse_clods_;
   NoiseTile clods_;
   NoiseTile own_clods_;
@@ -115,39 +124,53 @@ class SoilPainter {
   NoiseTile own_tint_;
 };
 
-/// Smooth soil heights on every fourth cell (ridges and tracks are wider), for interpolation.
-Raster<float> smoothSoil(const FieldModel& field, const Window& window) {
-  constexpr int kStep = 4;
-  Raster<float> soil(window.rows / kStep + 2, window.cols / kStep + 2);
+/// What varies slowly, on every fourth cell: ridges and tracks are wider.
+struct SmoothSoil {
+  static constexpr int kStep = 4;
+  Raster<float> height;
+  Raster<float> track;
+};
+
+SmoothSoil smoothSoil(const FieldModel& field, const Window& window) {
+  constexpr int kStep = SmoothSoil::kStep;
+  SmoothSoil soil;
+  soil.height = Raster<float>(window.rows / kStep + 2, window.cols / kStep + 2);
+  soil.track = soil.height;
   parallelFor(
-      static_cast<std::size_t>(soil.rows()),
+      static_cast<std::size_t>(soil.height.rows()),
       [&](std::size_t item) {
         const int r = static_cast<int>(item);
-        for (int c = 0; c < soil.cols(); ++c) {
-          const Eigen::Vector2d local =
-              window.cell * Eigen::Vector2d(kStep * c + 0.5, kStep * r + 0.5);
-          soil(r, c) = static_cast<float>(field.soilHeight(window.field(local)));
+        for (int c = 0; c < soil.height.cols(); ++c) {
+          const Eigen::Vector2d point =
+              window.field(window.cell * Eigen::Vector2d(kStep * c + 0.5, kStep * r + 0.5));
+          soil.height(r, c) = static_cast<float>(field.soilHeight(point));
+          soil.track(r, c) = field.wheelTrack(field.rowCoordinates(point).y());
         }
       },
       16);
   return soil;
 }
 
-void paintSoil(const FieldModel& field, const Visit& visit, const Raster<float>& smooth,
+void paintSoil(const FieldModel& field, const Visit& visit, const SmoothSoil& smooth,
                const Tile& tile, Canvas& canvas) {
-  const SoilPainter painter(field, visit, canvas.window, tile);
-  const Eigen::Vector2d step =
-      canvas.window.cell *
-      Eigen::Vector2d(std::cos(canvas.window.heading), std::sin(canvas.window.heading));
+  const Window& window = canvas.window;
+  const SoilPainter painter(field, visit, window, tile);
+  constexpr float kToSmooth = 1.0F / SmoothSoil::kStep;
   for (int r = tile.row0; r < tile.row1; ++r) {
-    Eigen::Vector2d point =
-        canvas.window.field(canvas.window.cell * Eigen::Vector2d(tile.col0 + 0.5, r + 0.5));
+    // Both frames are linear in the column.
+    Eigen::Vector2d point = window.field(window.cell * Eigen::Vector2d(tile.col0 + 0.5, r + 0.5));
+    const Eigen::Vector2d next =
+        window.field(window.cell * Eigen::Vector2d(tile.col0 + 1.5, r + 0.5));
+    Eigen::Vector2d uv = field.rowCoordinates(point);
+    const Eigen::Vector2d point_step = next - point;
+    const Eigen::Vector2d uv_step = field.rowCoordinates(next) - uv;
     Cell* cells = canvas.cells.row(r);
     float* ground = canvas.ground.row(r);
-    for (int c = tile.col0; c < tile.col1; ++c, point += step) {
-      const float soil =
-          sampleRaster(smooth, 0.25F * static_cast<float>(c), 0.25F * static_cast<float>(r));
-      painter.paint(point, soil, cells[c], ground[c]);
+    const float smooth_row = kToSmooth * static_cast<float>(r);
+    for (int c = tile.col0; c < tile.col1; ++c, point += point_step, uv += uv_step) {
+      const float smooth_col = kToSmooth * static_cast<float>(c);
+      painter.paint(point, uv, sampleRaster(smooth.height, smooth_col, smooth_row),
+                    sampleRaster(smooth.track, smooth_col, smooth_row), cells[c], ground[c]);
     }
   }
 }
@@ -199,7 +222,7 @@ Canvas renderVisit(const FieldModel& field, const Visit& visit, const Window& wi
   canvas.ground = Raster<float>(window.rows, window.cols);
   std::vector<Plant> plants = field.plantsIn(window, visit.growth);
   std::erase_if(plants, [&](const Plant& plant) { return pulled(plant, visit); });
-  const Raster<float> smooth = smoothSoil(field, window);
+  const SmoothSoil smooth = smoothSoil(field, window);
   const std::vector<Tile> tiles = tilesOf(window);
   const std::vector<std::vector<std::uint32_t>> lists =
       plantsPerTile(plants, tiles, window, visit.growth);
@@ -217,6 +240,7 @@ Canvas renderVisit(const FieldModel& field, const Visit& visit, const Window& wi
       painter.paint(plant, growFoliage(plant, change), soil);
     }
   });
+  canvas.leaf_depth = leafDepthOf(field.species());
   lightCanvas(canvas, sun, visit.overcast);
   return canvas;
 }

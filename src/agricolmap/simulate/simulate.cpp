@@ -17,7 +17,8 @@ namespace agricolmap {
 namespace {
 
 std::uint64_t seedOf(const SimulationOptions& options, std::uint64_t purpose) {
-  return hashBits(hashBits(0xA6C0, static_cast<std::uint64_t>(options.seed)), purpose);
+  const auto crop = static_cast<std::uint64_t>(options.crop);
+  return hashBits(hashBits(0xA6C0 + crop, static_cast<std::uint64_t>(options.seed)), purpose);
 }
 
 }  // namespace

@@ -135,7 +135,10 @@ class StripSensor {
       const int c = static_cast<int>(col + 0.5F);
       const int r = static_cast<int>(row + 0.5F);
       if (c < 0 || r < 0 || c >= canvas_->window.cols || r >= canvas_->window.rows) return false;
-      if (canvas_->cells(r, c).z > height) return true;
+      const float over = canvas_->cells(r, c).z - height;
+      if (over <= 0.0F) continue;
+      // Deep under a leaf the ray passes between the stalks; the soil stops every ray.
+      if (over < canvas_->leaf_depth || height < canvas_->ground(r, c)) return true;
     }
     return false;
   }
