@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud_reader.hpp"
 #include "agricolmap/io/cloud_writer.hpp"
+#include "agricolmap/io/file_sink.hpp"
 #include "agricolmap/io/matrix_file.hpp"
 #include "agricolmap/io/staged_output.hpp"
 #include "agricolmap/pipeline/registration.hpp"
@@ -75,7 +75,47 @@ void printSummary(const Registration& result, const std::string& directory) {
   fmt::print("results in {}\n", directory);
 }
 
+void warnOfDropped(const Cloud& cloud) {
+  if (cloud.dropped_points == 0) return;
+  spdlog::warn("{}: {} points with NaN, infinite or absurd coordinates were left out", cloud.name,
+               cloud.dropped_points);
+}
+
+RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
+                                  const LoadedPair& pair, const OptionTable& table) {
+  RegistrationReportInfo info;
+  info.version = AGRICOLMAP_VERSION;
+  info.seed = static_cast<std::uint64_t>(globals.seed);
+  info.threads = globals.threads;
+  info.command_line = globals.command_line;
+  info.fixed = cloudReport(pair.fixed, arguments.fixed);
+  info.moving = cloudReport(pair.moving, arguments.moving);
+  info.options = toJson(table);
+  return info;
+}
+
+/// Fills `output` with everything but the report.
+std::vector<std::string> writeResults(const RegisterArguments& arguments,
+                                      const RegistrationOptions& options, const LoadedPair& pair,
+                                      const Registration& result, const StagedOutput& output,
+                                      StageTimes& times) {
+  const bool keep = result.has_transform &&
+                    (result.verdict.status == Status::kAccepted || arguments.keep_rejected);
+  if (keep) {
+    times.run("write", [&] {
+      writeMatrix(output.path("transform.txt"), result.fixed_from_moving);
+      writePly(output.path("aligned.ply"), pair.moving, result.fixed_from_moving);
+    });
+  }
+  if (arguments.no_pictures) return {};
+  return times.run("pictures", [&] {
+    return writePictures(output.path("exg_maps.png").parent_path(), result,
+                         {arguments.fixed, arguments.moving, options.evidence});
+  });
+}
+
 ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals) {
+  const Stopwatch watch;
   RegistrationOptions options = chosenOptions(arguments, globals);
   const OptionTable table = optionTable(options);
   if (arguments.dump_config) {
@@ -85,43 +125,25 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   if (arguments.fixed.empty() || arguments.moving.empty() || arguments.output.empty()) {
     throw UsageError("register needs FIXED, MOVING and -o DIR; see agricolmap register --help");
   }
-  // First of all, so that an hour's work does not end at a folder that cannot be written.
+  // First of all, so that the work does not end at a folder that cannot be written.
   StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   StageTimes times([&](std::string_view stage) { progress.step(stage); });
-  RegistrationReportInfo info;
+  std::string guess_source;
   const Eigen::Affine3d guess =
-      initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
+      initialGuess(arguments.fixed, arguments.moving, arguments.prior, guess_source);
   const LoadedPair pair = times.run("read", [&] { return load(arguments); });
-  for (const Cloud* cloud : {&pair.fixed, &pair.moving}) {
-    if (cloud->dropped_points > 0) {
-      spdlog::warn("{}: {} points with NaN or infinite coordinates were left out", cloud->name,
-                   cloud->dropped_points);
-    }
-  }
+  warnOfDropped(pair.fixed);
+  warnOfDropped(pair.moving);
   const Registration result = registerClouds(pair.fixed, pair.moving, guess, options, times);
-  const bool keep = result.has_transform &&
-                    (result.verdict.status == Status::kAccepted || arguments.keep_rejected);
-  times.run("write", [&] {
-    if (keep) {
-      writeMatrix(output.path("transform.txt"), result.fixed_from_moving);
-      writePly(output.path("aligned.ply"), pair.moving, result.fixed_from_moving);
-    }
-  });
-  std::vector<std::string> pictures;
-  if (!arguments.no_pictures) {
-    pictures =
-        times.run("pictures", [&] { return writePictures(output.path("").parent_path(), result); });
-  }
-  info.version = AGRICOLMAP_VERSION;
-  info.seed = globals.seed;
-  info.threads = globals.threads;
-  info.command_line = globals.command_line;
-  info.preset = arguments.preset;
-  info.prior = guess;
-  info.options = toJson(table);
-  writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result, times,
-                        info);
+  RegistrationReportInfo info = reportInfo(arguments, globals, pair, table);
+  info.guess = guess;
+  info.guess_source = guess_source;
+  info.pictures = writeResults(arguments, options, pair, result, output, times);
+  info.stage_times = times.stages();
+  info.total_time = watch.seconds();
+  info.peak_memory = peakMemoryBytes();
+  writeText(output.path("registration.json"), registrationJson(result, info).dump(2) + "\n");
   throwIfInterrupted();
   std::vector<std::string> stale = pictureNames();
   stale.insert(stale.end(), {"transform.txt", "aligned.ply"});

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/error.hpp"
@@ -20,7 +21,7 @@ struct Globals {
   int verbose = 0;
   bool quiet = false;
   bool overwrite = false;
-  std::string command_line;
+  std::vector<std::string> command_line;
 };
 
 /// Registers one verb; the returned code is the program's.

@@ -36,15 +36,9 @@ void setUpLogging(const Globals& globals) {
                                           : spdlog::level::info);
 }
 
-std::string joinArguments(int argc, char** argv) {
-  std::string line;
-  for (int i = 0; i < argc; ++i) line += (i == 0 ? "" : " ") + std::string(argv[i]);
-  return line;
-}
-
 ExitCode run(int argc, char** argv) {
   Globals globals;
-  globals.command_line = joinArguments(argc, argv);
+  globals.command_line.assign(argv, argv + argc);
   CLI::App app{
       "AgriColMap lays a ground robot's 3D map of a crop field into a drone's, to the centimetre."};
   app.name("agricolmap");
