@@ -12,7 +12,6 @@
 #include "agricolmap/simulate/geotag.hpp"
 #include "agricolmap/simulate/light.hpp"
 #include "agricolmap/simulate/noise.hpp"
-#include "agricolmap/simulate/ortho.hpp"
 
 namespace agricolmap {
 namespace {
@@ -359,46 +358,6 @@ TEST(Light, SunMovesFromEastToWestAndCastsShadowsAway) {
     EXPECT_GT(cellAt(0.10).light, 150) << heading;
     EXPECT_GT(cellAt(-0.40).light, 150) << heading;
   }
-}
-
-OrthoField stripedField() {
-  OrthoField field;
-  field.name = "made-up mosaic";
-  field.gsd = 0.012;
-  field.colour = Raster<Rgb>(600, 700);
-  for (int r = 0; r < 600; ++r) {
-    for (int c = 0; c < 700; ++c) {
-      const bool row = r % 40 < 12 && noiseAt(5, c / 9.0, static_cast<double>(r / 40)) > -0.3F;
-      field.colour(r, c) = row ? Rgb{70, 130, 50} : Rgb{130, 110, 95};
-    }
-  }
-  return field;
-}
-
-TEST(SimulateFromOrtho, KeepsTheTruthAndTheMask) {
-  OrthoField field = stripedField();
-  field.valid = Raster<std::uint8_t>(600, 700, 1);
-  for (int r = 0; r < 600; ++r) {
-    for (int c = 600; c < 700; ++c) field.valid(r, c) = 0;
-  }
-  SimulationOptions options = smallOptions();
-  options.ugv.drift = 0.0;
-  options.ugv.length = 4.0;
-  const SimulatedPair pair = simulateFromOrtho(field, options);
-  EXPECT_LT(rms(pair, pair.nominal), 2e-6);
-  const Box3 box = boundingBox(pair.uav);
-  EXPECT_NEAR(box.max.x(), 600 * 0.012, 0.02);
-  // Made-up plants stand above the soil.
-  EXPECT_GT(boundingBox(pair.ugv).extent().z(), 0.1F);
-}
-
-TEST(SimulateFromOrtho, RefusesRastersThatDoNotFit) {
-  OrthoField field = stripedField();
-  field.height = Raster<float>(10, 10);
-  EXPECT_THROW(simulateFromOrtho(field, smallOptions()), InputError);
-  field = stripedField();
-  field.valid = Raster<std::uint8_t>(600, 700, 0);
-  EXPECT_THROW(simulateFromOrtho(field, smallOptions()), InputError);
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ SimulationOptions cropPreset(Crop crop) {
   o.crop = crop;
   switch (crop) {
     case Crop::kSoybean:
-      o.field.straw = 20.0;
+      o.field.straw = 40.0;
       break;
     case Crop::kSugarBeet10m:
       beetPreset(o);

@@ -141,16 +141,16 @@ class StripSensor {
   bool hidden(float x, float y, float z, const Ray& ray) const {
     const float top = ceiling_[static_cast<std::size_t>(
         std::clamp(static_cast<int>(x / cell_), 0, canvas_->window.cols - 1) / kBlock)];
-    const float step = 1.5F;
+    constexpr float kStep = 2.0F;  // in cells
     const Eigen::Vector2f direction = ray.direction.head<2>().normalized();
-    const float rise = ray.slope * step * cell_;
+    const float rise = ray.slope * kStep * cell_;
     if (rise <= 0.0F) return true;  // the plant is taller than the camera
     float col = x / cell_ - 0.5F;
     float row = y / cell_ - 0.5F;
     float height = z + 0.004F;
     while (height < top) {
-      col += step * direction.x();
-      row += step * direction.y();
+      col += kStep * direction.x();
+      row += kStep * direction.y();
       height += rise;
       const int c = static_cast<int>(col + 0.5F);
       const int r = static_cast<int>(row + 0.5F);
