@@ -1,5 +1,5 @@
-// Stage 2: the multimodal grid map (paper Sec. III-A): per cell a surface height and an Excess Green
-// index, both Gaussian-weighted means of the cell's points.
+// Stage 2: the multimodal grid map (paper Sec. III-A): per cell a surface height and an Excess
+// Green index, both Gaussian-weighted means of the cell's points.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,8 +19,8 @@ enum class ExgKind {
 };
 
 struct GridOptions {
-  double cell = 0.02;                  ///< s (Tab. III) [m]
-  double sigma = 0.04;                 ///< σ_avg (Tab. III) [m]
+  double cell = 0.02;   ///< s (Tab. III) [m]
+  double sigma = 0.04;  ///< σ_avg (Tab. III) [m]
   ExgKind exg = ExgKind::kChromatic;
 };
 void describe(OptionTable& table, GridOptions& options);
@@ -47,9 +47,9 @@ struct GridMap {
 /// Horizontal window of the levelled frame [m].
 using Box2 = Eigen::AlignedBox2d;
 
-/// Grids the points of `cloud` that lie in `window` after `levelled_from_local`. Cell borders lie on
-/// multiples of the cell size, so maps of one frame share their lattice. Throws InputError when no
-/// point lies in the window.
+/// Grids the points of `cloud` that lie in `window` after `levelled_from_local`. Cell borders lie
+/// on multiples of the cell size, so maps of one frame share their lattice. Throws InputError when
+/// no point lies in the window.
 GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options);
 

@@ -6,8 +6,7 @@
 namespace agricolmap {
 
 void describe(OptionTable& table, DescribeOptions& options) {
-  table.choice("term", options.term, {"exg_height", "rgb", "exg", "height"},
-               "what the matching cost compares");
+  describeDataTerm(table, options.term);
   table.group("daisy", options.daisy);
   table.group("fpfh", options.fpfh);
 }

@@ -4,20 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "agricolmap/2_grid/data_term.hpp"
 #include "agricolmap/2_grid/grid_map.hpp"
 #include "agricolmap/3_describe/daisy.hpp"
 #include "agricolmap/3_describe/fpfh.hpp"
 #include "agricolmap/core/options.hpp"
 
 namespace agricolmap {
-
-/// Which descriptors the matching cost compares (paper Tab. IV).
-enum class DataTerm {
-  kExgHeight,  ///< DAISY on Excess Green and FPFH on height, the paper's choice
-  kRgb,        ///< DAISY on the three colour channels
-  kExg,        ///< DAISY on Excess Green
-  kHeight,     ///< FPFH on height
-};
 
 struct DescribeOptions {
   DataTerm term = DataTerm::kExgHeight;

@@ -1,5 +1,7 @@
 #include "agricolmap/4_associate/association.hpp"
 
+#include <cmath>
+
 namespace agricolmap {
 
 void describe(OptionTable& table, PriorUncertainty& options) {
@@ -9,6 +11,10 @@ void describe(OptionTable& table, PriorUncertainty& options) {
                "how far off its heading may be (paper: 11.5)");
   table.number("scale", options.scale, 0.0, 0.5, "",
                "how far off each horizontal scale may be, relative (paper: 0.30)");
+}
+
+double logScaleLimit(const PriorUncertainty& uncertainty) {
+  return -std::log(1.0 - uncertainty.scale);
 }
 
 }  // namespace agricolmap

@@ -22,6 +22,11 @@ struct PriorUncertainty {
 };
 void describe(OptionTable& table, PriorUncertainty& options);
 
+/// Half-width of the interval of log-scales: a file whose axis is off by a factor of 1 ± scale
+/// needs a correction between 1/(1 + scale) and 1/(1 − scale); ±log 1/(1 − scale) covers both
+/// readings.
+double logScaleLimit(const PriorUncertainty& uncertainty);
+
 /// What an association knows beside the two maps. The moving map is gridded with the initial guess
 /// applied: where the guess is right, the flow is zero.
 struct SearchSpace {

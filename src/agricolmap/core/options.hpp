@@ -39,7 +39,7 @@ class OptionTable {
                std::string_view help);
   void flag(std::string_view name, bool& value, std::string_view help);
   template <typename Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   void choice(std::string_view name, Enum& value, std::vector<std::string> names,
               std::string_view help) {
     addChoice(name,

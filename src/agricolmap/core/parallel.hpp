@@ -39,9 +39,8 @@ template <typename T, typename Body>
 T parallelSum(std::size_t count, std::size_t chunk, const T& zero, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
   std::vector<T> parts(chunks, zero);
-  parallelFor(chunks, [&](std::size_t i) {
-    parts[i] = body(i * chunk, std::min(count, (i + 1) * chunk));
-  });
+  parallelFor(chunks,
+              [&](std::size_t i) { parts[i] = body(i * chunk, std::min(count, (i + 1) * chunk)); });
   T sum = zero;
   for (const T& part : parts) sum += part;
   return sum;

@@ -1,0 +1,62 @@
+#include "agricolmap/1_level/level.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/random.hpp"
+
+namespace agricolmap {
+namespace {
+
+/// A 10 × 2.2 m strip with plants on 30 % of it and flying points.
+Cloud makeStrip(double roll_deg, double pitch_deg, double height) {
+  Random random(7);
+  const Eigen::Affine3d tilt(
+      Eigen::Translation3d(0, 0, height) *
+      Eigen::AngleAxisd(roll_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitX()) *
+      Eigen::AngleAxisd(pitch_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitY()));
+  Cloud cloud;
+  cloud.name = "strip";
+  for (int i = 0; i < 50000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    if (random.chance(0.3)) p.z() += random.uniform(0.0, 0.2);
+    if (random.chance(0.01)) p.z() += random.normal(2.0);
+    cloud.xyz.push_back((tilt * p).cast<float>());
+  }
+  return cloud;
+}
+
+TEST(Level, FindsTheGroundUnderPlantsAndFlyingPoints) {
+  for (const double roll : {0.0, 3.0, -10.0, 30.0}) {
+    const Cloud cloud = makeStrip(roll, 2.0, 5.0);
+    const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+    double worst = 0.0;
+    const Cloud flat = makeStrip(0, 0, 0);
+    for (std::size_t i = 0; i < cloud.size(); i += 97) {
+      const Eigen::Vector3d p = level.levelled_from_guess * cloud.xyz[i].cast<double>();
+      if (std::abs(flat.xyz[i].z()) < 0.2F) {
+        worst = std::max(worst, std::abs(p.z() - static_cast<double>(flat.xyz[i].z())));
+      }
+    }
+    EXPECT_LT(worst, 0.03) << "roll " << roll;
+  }
+}
+
+TEST(Level, RefusesCloudsThatAreNoMap) {
+  Cloud cloud;
+  cloud.name = "bad";
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  cloud.xyz.assign(1, Eigen::Vector3f(1, 2, 3));
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  cloud.xyz.assign(1000, Eigen::Vector3f(1, 2, 3));
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  cloud.xyz.clear();
+  for (int i = 0; i < 1000; ++i) cloud.xyz.emplace_back(0.01F * static_cast<float>(i), 0, 0);
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  EXPECT_THROW(levelCloud(makeStrip(70, 0, 0), Eigen::Affine3d::Identity(), {}), InputError);
+}
+
+}  // namespace
+}  // namespace agricolmap

@@ -1,0 +1,46 @@
+// Cutting the moving map into blocks along its own axes.
+#pragma once
+
+#include <vector>
+
+#include "agricolmap/2_grid/signal_map.hpp"
+
+namespace agricolmap {
+
+/// The moving map's extent in a frame turned to its principal axes (strips lie in any direction).
+struct StripFrame {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();       ///< middle of the extent [m]
+  Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();     ///< columns: along, across
+  Eigen::Vector2d half_extent = Eigen::Vector2d::Zero();  ///< [m], along ≥ across
+
+  /// Coordinates along and across of a point [m].
+  Eigen::Vector2d local(const Eigen::Vector2d& point) const {
+    return axes.transpose() * (point - centre);
+  }
+  Eigen::Vector2d world(const Eigen::Vector2d& local_point) const {
+    return centre + axes * local_point;
+  }
+};
+
+/// Principal frame of the seen cells; the extents leave out the outermost 0.5 % each side.
+StripFrame stripFrame(const SignalMap& map);
+
+/// A rectangle of the strip frame.
+struct Block {
+  Eigen::Vector2d low;  ///< strip-frame coordinates [m]
+  Eigen::Vector2d high;
+  Eigen::Vector2d centre;  ///< levelled frame [m]
+  double energy = 0.0;     ///< sum of squared signal over its seen cells
+
+  bool contains(const Eigen::Vector2d& local) const {
+    return (local.array() >= low.array()).all() && (local.array() < high.array()).all();
+  }
+};
+
+/// About square blocks of side near `side`, in order along the strip.
+std::vector<Block> cutBlocks(const SignalMap& map, const StripFrame& strip, double side);
+
+/// Axis-aligned bounds of a block in the levelled frame.
+Eigen::AlignedBox2d boundsOf(const Block& block, const StripFrame& strip);
+
+}  // namespace agricolmap

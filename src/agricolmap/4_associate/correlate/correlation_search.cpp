@@ -1,0 +1,259 @@
+#include "agricolmap/4_associate/correlate/correlation_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "agricolmap/4_associate/correlate/blocks.hpp"
+#include "agricolmap/4_associate/correlate/hypotheses.hpp"
+#include "agricolmap/core/parallel.hpp"
+
+namespace agricolmap {
+
+void describe(OptionTable& table, CorrelationOptions& options) {
+  table.number("cell", options.cell, 0.01, 10.0, "m",
+               "cell of the search, rounded to whole grid cells");
+  table.number("block", options.block, 0.2, 100.0, "m",
+               "side of the blocks that the moving map is cut into");
+  table.integer("max_blocks", options.max_blocks, 1, 1000, "",
+                "at most this many blocks, the most textured ones, take part");
+  table.integer("candidates", options.candidates, 1, 1000, "",
+                "placements that are handed on to be refined and compared");
+  table.number("separation", options.separation, 0.0, 100.0, "m",
+               "placements whose corners differ by less are one");
+  table.group("signal", options.signal);
+  table.group("filter", options.filter);
+}
+
+namespace {
+
+/// A hypothesis with the shift that fits it best somewhere.
+struct Candidate {
+  Hypothesis hypothesis;
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< of the search space's centre [m]
+  double score = -std::numeric_limits<double>::infinity();
+};
+
+bool better(const Candidate& a, const Candidate& b) { return a.score > b.score; }
+
+/// Shifts that the initial guess allows, in cells of the search.
+struct ShiftWindow {
+  int radius;
+  double radius2;
+  explicit ShiftWindow(double cells)
+      : radius(static_cast<int>(std::ceil(cells))), radius2(cells * cells + 1e-9) {}
+  /// Half-width of the disc at row offset `dr`.
+  int reach(int dr) const {
+    return static_cast<int>(std::sqrt(std::max(0.0, radius2 - static_cast<double>(dr) * dr)));
+  }
+};
+
+/// Work space and inputs of one task: everything about one coarse hypothesis.
+class CoarseTask {
+ public:
+  CoarseTask(const SignalMap& moving, const MatchedFilter& filter, const SearchSpace& space,
+             const StripFrame& strip, const std::vector<Block>& blocks, const ShiftWindow& window)
+      : moving_(moving),
+        filter_(filter),
+        space_(space),
+        strip_(strip),
+        blocks_(blocks),
+        window_(window) {}
+
+  /// Best placement of each fine hypothesis, given block scores under `coarse`.
+  std::vector<Candidate> run(const Hypothesis& coarse, const std::vector<Hypothesis>& fine) const {
+    std::vector<ComplexRaster> surfaces;
+    const double deviation = correlateBlocks(coarse, surfaces);
+    std::vector<Candidate> best;
+    if (deviation <= 0.0) return best;
+    std::vector<float> sum;
+    for (const Hypothesis& hypothesis : fine) {
+      bestShift(hypothesis, surfaces, deviation, sum, best);
+    }
+    return best;
+  }
+
+ private:
+  /// One surface per block; returns the deviation of their sum over the map.
+  double correlateBlocks(const Hypothesis& coarse, std::vector<ComplexRaster>& surfaces) const {
+    const Eigen::Matrix2d linear = linearOf(coarse, space_.scale_axes);
+    ComplexRaster scratch(filter_.fft().size());
+    double variance = 0.0;
+    for (const Block& block : blocks_) {
+      const Template piece =
+          makeTemplate(moving_, block.centre, linear, boundsOf(block, strip_), filter_.frame().cell,
+                       filter_.options().height_weight,
+                       [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
+      ComplexRaster surface(filter_.fft().size());
+      filter_.correlate(piece, surface, scratch);
+      double sum2 = 0.0;
+      for (const float v : surface.re) sum2 += static_cast<double>(v) * static_cast<double>(v);
+      variance += sum2 / static_cast<double>(surface.size());
+      surfaces.push_back(std::move(surface));
+    }
+    return std::sqrt(variance);
+  }
+
+  /// Adds the blocks' surfaces, each shifted to where the hypothesis puts its block, and keeps the
+  /// best shift of the window.
+  void bestShift(const Hypothesis& hypothesis, const std::vector<ComplexRaster>& surfaces,
+                 double deviation, std::vector<float>& sum, std::vector<Candidate>& best) const {
+    const Eigen::Matrix2d linear = linearOf(hypothesis, space_.scale_axes);
+    const double cell = filter_.frame().cell;
+    const int cols = filter_.fft().cols();
+    const int rows = filter_.fft().rows();
+    std::vector<std::pair<int, int>> anchor(blocks_.size());
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Eigen::Vector2d at =
+          filter_.frame().cellOf(space_.centre + linear * (blocks_[b].centre - space_.centre));
+      anchor[b] = {static_cast<int>(std::lround(at.y())), static_cast<int>(std::lround(at.x()))};
+    }
+    Candidate top;
+    for (int dr = -window_.radius; dr <= window_.radius; ++dr) {
+      const int reach = window_.reach(dr);
+      sum.assign(static_cast<std::size_t>(2 * reach + 1), 0.0F);
+      for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        const int row = ((anchor[b].first + dr) % rows + rows) % rows;
+        const int first = anchor[b].second - reach;
+        const int from = std::clamp(-first, 0, 2 * reach + 1);
+        const int to = std::clamp(cols - first, from, 2 * reach + 1);
+        // Blocks that would lie outside the map add nothing.
+        const float* source =
+            surfaces[b].re.data() + static_cast<std::ptrdiff_t>(row) * cols + first;
+        for (int i = from; i < to; ++i) sum[static_cast<std::size_t>(i)] += source[i];
+      }
+      const auto peak = std::max_element(sum.begin(), sum.end());
+      const double score = static_cast<double>(*peak) / deviation;
+      if (score > top.score) {
+        const auto dc = static_cast<double>(peak - sum.begin()) - reach;
+        top = {hypothesis, cell * Eigen::Vector2d(dc, dr), score};
+      }
+    }
+    best.push_back(top);
+  }
+
+  const SignalMap& moving_;
+  const MatchedFilter& filter_;
+  const SearchSpace& space_;
+  const StripFrame& strip_;
+  const std::vector<Block>& blocks_;
+  const ShiftWindow& window_;
+};
+
+/// Index of the coarse hypothesis nearest to `fine`, distances weighed by the lattice's steps.
+std::size_t nearestCoarse(const Hypothesis& fine, const std::vector<Hypothesis>& coarse,
+                          const Eigen::Vector3d& weight) {
+  std::size_t best = 0;
+  double best_distance = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    const Eigen::Vector3d d(coarse[i].yaw - fine.yaw, std::log(coarse[i].scale_x / fine.scale_x),
+                            std::log(coarse[i].scale_y / fine.scale_y));
+    const double distance = d.cwiseProduct(weight).squaredNorm();
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = i;
+    }
+  }
+  return best;
+}
+
+/// Largest displacement between two candidates over the strip's corners [m].
+double cornerDistance(const Candidate& a, const Candidate& b, const StripFrame& strip,
+                      const SearchSpace& space) {
+  const Eigen::Matrix2d difference =
+      linearOf(a.hypothesis, space.scale_axes) - linearOf(b.hypothesis, space.scale_axes);
+  double worst = 0.0;
+  for (const double u : {-1.0, 1.0}) {
+    for (const double v : {-1.0, 1.0}) {
+      const Eigen::Vector2d corner =
+          strip.world({u * strip.half_extent.x(), v * strip.half_extent.y()});
+      worst = std::max(worst, (difference * (corner - space.centre) + a.shift - b.shift).norm());
+    }
+  }
+  return worst;
+}
+
+Placement placementOf(const Candidate& candidate, const StripFrame& strip,
+                      const SearchSpace& space) {
+  Placement placement;
+  placement.score = candidate.score;
+  const Eigen::Matrix2d linear = linearOf(candidate.hypothesis, space.scale_axes);
+  for (const double u : {-1.0, 0.0, 1.0}) {
+    for (const double v : {-1.0, 0.0, 1.0}) {
+      const Eigen::Vector2d point =
+          strip.world({u * strip.half_extent.x(), v * strip.half_extent.y()});
+      placement.matches.push_back(
+          {point, space.centre + candidate.shift + linear * (point - space.centre)});
+    }
+  }
+  return placement;
+}
+
+std::vector<Block> texturedBlocks(std::vector<Block> blocks, int most) {
+  const auto count = std::min(blocks.size(), static_cast<std::size_t>(most));
+  std::stable_sort(blocks.begin(), blocks.end(),
+                   [](const Block& a, const Block& b) { return a.energy > b.energy; });
+  blocks.resize(count);
+  return blocks;
+}
+
+}  // namespace
+
+CorrelationSearch::CorrelationSearch(const CorrelationOptions& options) : options_(options) {
+  checkOptions(options);
+}
+
+AssociationResult CorrelationSearch::associate(const GridMap& fixed, const GridMap& moving,
+                                               const SearchSpace& space, StageTimes& times) const {
+  return times.run("search", [&] {
+    const int factor = std::max(1, static_cast<int>(std::lround(options_.cell / fixed.frame.cell)));
+    const SignalMap fixed_signal = makeSignalMap(fixed, factor, options_.signal);
+    const SignalMap moving_signal = makeSignalMap(moving, factor, options_.signal);
+    const double cell = fixed_signal.frame.cell;
+    const StripFrame strip = stripFrame(moving_signal);
+    const std::vector<Block> blocks =
+        texturedBlocks(cutBlocks(moving_signal, strip, options_.block), options_.max_blocks);
+    const MatchedFilter filter(fixed_signal, options_.filter);
+
+    // Half-extents along the scale axes, of a block and of the whole strip.
+    const Eigen::Matrix2d turn = (space.scale_axes.transpose() * strip.axes).cwiseAbs();
+    const Eigen::Vector2d block_half =
+        turn * (0.5 * (blocks.front().high - blocks.front().low)).eval();
+    const Eigen::Vector2d strip_half = turn * strip.half_extent;
+    const auto coarse = coverSpace(space.uncertainty, block_half, 0.5 * cell);
+    const auto fine = coverSpace(space.uncertainty, strip_half, 0.5 * cell);
+    const Eigen::Vector3d weight(block_half.norm(), block_half.x(), block_half.y());
+    std::vector<std::vector<Hypothesis>> members(coarse.size());
+    for (const Hypothesis& h : fine) members[nearestCoarse(h, coarse, weight)].push_back(h);
+
+    const ShiftWindow window(space.uncertainty.translation / cell);
+    const CoarseTask task(moving_signal, filter, space, strip, blocks, window);
+    std::vector<std::vector<Candidate>> found(coarse.size());
+    parallelFor(coarse.size(), [&](std::size_t i) {
+      if (!members[i].empty()) found[i] = task.run(coarse[i], members[i]);
+    });
+
+    std::vector<Candidate> all;
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    std::stable_sort(all.begin(), all.end(), better);
+    AssociationResult result;
+    std::vector<Candidate> kept;
+    for (const Candidate& candidate : all) {
+      if (static_cast<int>(kept.size()) >= options_.candidates) break;
+      const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& k) {
+        return cornerDistance(k, candidate, strip, space) < options_.separation;
+      });
+      if (!is_new) continue;
+      kept.push_back(candidate);
+      result.placements.push_back(placementOf(candidate, strip, space));
+    }
+    result.counts = {{"hypotheses", static_cast<double>(fine.size())},
+                     {"correlations", static_cast<double>(coarse.size() * blocks.size())},
+                     {"blocks", static_cast<double>(blocks.size())},
+                     {"placements", static_cast<double>(kept.size())}};
+    return result;
+  });
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,33 @@
+// A global search for the moving map: every heading and pair of scales that the initial guess
+// leaves open, each over all shifts at once. Follows recipe E of the research notes, with the
+// strip cut into blocks: a block tolerates coarse steps of heading and scale, so the expensive
+// correlations are few and the fine hypotheses are sums of shifted block scores.
+#pragma once
+
+#include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/4_associate/correlate/matched_filter.hpp"
+
+namespace agricolmap {
+
+struct CorrelationOptions {
+  double cell = 0.12;        ///< cell of the search, rounded to whole grid cells [m]
+  double block = 2.2;        ///< side of the blocks the moving map is cut into [m]
+  int max_blocks = 10;       ///< of the most textured ones
+  int candidates = 12;       ///< placements handed on
+  double separation = 0.35;  ///< placements whose corners differ by less are one [m]
+  SignalOptions signal;
+  MatchedFilterOptions filter;
+};
+void describe(OptionTable& table, CorrelationOptions& options);
+
+class CorrelationSearch : public Association {
+ public:
+  explicit CorrelationSearch(const CorrelationOptions& options);
+  AssociationResult associate(const GridMap& fixed, const GridMap& moving, const SearchSpace& space,
+                              StageTimes& times) const override;
+
+ private:
+  CorrelationOptions options_;
+};
+
+}  // namespace agricolmap

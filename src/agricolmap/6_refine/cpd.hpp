@@ -1,0 +1,90 @@
+// Stage 6: affine coherent point drift between vegetation points, from a good start to centimetres
+// (Myronenko & Song, "Point set registration: coherent point drift", TPAMI 2010).
+//
+// Three things differ from the article. (1) The fixed points are the mixture and the moving ones
+// the data: the ground robot's strip is covered by the drone's map, not the reverse, and in the
+// article's roles the drone's points around the strip would stretch it. (2) The Gaussians are cut
+// off at 3σ and found through a grid, so the cost is that of the pairs within 3σ. (3) σ shrinks at
+// a set pace from the start's uncertainty at least as fast as the article's estimate of it; points
+// are merged to squares of σ/2 meanwhile, so that the coarse iterations cost next to nothing.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "agricolmap/6_refine/vegetation.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+/// Which horizontal maps the refinement may choose from. Tilt is never estimated from the points:
+/// near-planar data cannot carry it.
+enum class CpdModel {
+  kAffine,      ///< shift, yaw, two scales, shear: 6 parameters
+  kScaled,      ///< shift, yaw, two scales along the moving file's axes: 5 parameters
+  kSimilarity,  ///< shift, yaw, one scale: 4 parameters
+  kRigid,       ///< shift, yaw: 3 parameters
+};
+
+struct CpdOptions {
+  CpdModel model = CpdModel::kAffine;
+  double sigma_start = 0.15;    ///< σ of the first iteration: how wrong the start may be [m]
+  double sigma_end = 0.025;     ///< least σ [m]
+  double decay = 0.85;          ///< most of σ that an iteration may leave
+  double sigma_height = 0.15;   ///< deviation of the height difference [m]; 0: heights unused
+  bool vertical_scale = false;  ///< estimate a vertical scale beside the offset
+  double outlier_share = 0.4;   ///< w, prior share of moving points without a counterpart
+  bool weights = true;          ///< greener points count more
+  int max_points = 40000;       ///< per cloud; more are merged to squares
+  int max_iterations = 80;
+  double tolerance = 1e-4;   ///< motion of the strip's points that counts as standing still [m]
+  double max_motion = 0.5;   ///< motion from the start that is no refinement any more [m]
+  double min_matched = 0.1;  ///< least share of the moving points matched in the end
+};
+void describe(OptionTable& table, CpdOptions& options);
+
+enum class CpdStatus {
+  kConverged,
+  kIterationLimit,  ///< usable, still moving a little
+  kTooFewPoints,    ///< fewer than 20 points on one side (after cropping to the overlap)
+  kNoMatches,       ///< less than `min_matched` of the moving points found a counterpart
+  kDegenerate,      ///< the matched points determine no map of the model
+  kRanAway,         ///< moved further than `max_motion`
+};
+std::string_view describe(CpdStatus status);
+
+/// Where the refinement starts, and what it returns: fixed = plane · moving horizontally,
+/// fixed_z = height_scale · moving_z + height_offset; levelled frames [m].
+struct CpdPose {
+  Eigen::Affine2d plane = Eigen::Affine2d::Identity();
+  double height_offset = 0.0;
+  double height_scale = 1.0;
+};
+
+struct CpdResult {
+  CpdStatus status = CpdStatus::kTooFewPoints;
+  CpdPose pose;                ///< refined; the start unless usable()
+  double sigma = 0.0;          ///< of the last iteration [m]
+  double matched_share = 0.0;  ///< mean posterior of not being an outlier, of the moving points
+  double rms = 0.0;            ///< of matched points to the mean of their counterparts [m]
+  double motion = 0.0;         ///< largest motion of a moving point by the refinement [m]
+  int iterations = 0;
+  std::size_t fixed_points = 0;   ///< used
+  std::size_t moving_points = 0;  ///< used
+  std::size_t pairs = 0;          ///< kernel evaluations in all iterations
+  bool usable() const {
+    return status == CpdStatus::kConverged || status == CpdStatus::kIterationLimit;
+  }
+};
+
+/// Refines `start`. `scale_axes`: directions of the moving file's x and y axes (unit columns) in
+/// the moving points' frame, used by CpdModel::kScaled. Failing to register is a status; the same
+/// result on any number of threads.
+CpdResult refineByCpd(const std::vector<VegetationPoint>& fixed,
+                      const std::vector<VegetationPoint>& moving, const CpdPose& start,
+                      const CpdOptions& options,
+                      const Eigen::Matrix2d& scale_axes = Eigen::Matrix2d::Identity());
+
+}  // namespace agricolmap

@@ -1,0 +1,365 @@
+#include "agricolmap/6_refine/cpd.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "agricolmap/6_refine/cpd_fit.hpp"
+#include "agricolmap/6_refine/cpd_kernel.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/core/transform.hpp"
+
+namespace agricolmap {
+namespace {
+
+using Points = std::vector<VegetationPoint>;
+
+struct Plant {
+  Eigen::Vector2d position;
+  double radius;
+  double height;
+};
+
+/// Rows 0.5 m apart along x, plants about 0.18 m apart with jitter and gaps.
+std::vector<Plant> makeField(double length, double width, Random& random) {
+  std::vector<Plant> plants;
+  for (double y = -0.5 * width; y < 0.5 * width; y += 0.5) {
+    for (double x = -0.5 * length; x < 0.5 * length; x += 0.18) {
+      if (random.chance(0.1)) continue;
+      plants.push_back({{x + random.normal(0.03), y + random.normal(0.02)},
+                        random.uniform(0.04, 0.09),
+                        random.uniform(0.1, 0.25)});
+    }
+  }
+  return plants;
+}
+
+struct Sampling {
+  double per_plant = 40.0;  ///< points
+  double missing = 0.4;     ///< share of plants not seen
+  double outliers = 0.1;    ///< points strewn over the area, relative to those of plants
+  double noise = 0.01;      ///< of each point [m]
+  double height_bias = 0.0;
+};
+
+/// Points of the plants inside `box`, each plant seen on its own leaves.
+Points sample(const std::vector<Plant>& plants, const Box2& box, const Sampling& how,
+              Random& random) {
+  Points points;
+  for (const Plant& plant : plants) {
+    if (!box.contains(plant.position) || random.chance(how.missing)) continue;
+    for (int i = 0; i < static_cast<int>(how.per_plant); ++i) {
+      const double radius = plant.radius * std::sqrt(random.uniform());
+      const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+      points.push_back({plant.position +
+                            radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)) +
+                            Eigen::Vector2d(random.normal(how.noise), random.normal(how.noise)),
+                        plant.height * (1.0 - radius / 0.2) + how.height_bias + random.normal(0.02),
+                        random.uniform(0.3, 1.0)});
+    }
+  }
+  const auto strewn = static_cast<std::size_t>(how.outliers * static_cast<double>(points.size()));
+  for (std::size_t i = 0; i < strewn; ++i) {
+    const Eigen::Vector2d share(random.uniform(), random.uniform());
+    points.push_back({box.min() + share.cwiseProduct(box.sizes()), random.uniform(0.0, 0.2), 0.5});
+  }
+  return points;
+}
+
+/// A pair with a known affine: fixed = truth · moving.
+struct Scene {
+  Points fixed;
+  Points moving;
+  CpdPose truth;
+};
+
+CpdPose makePose(double x, double y, double yaw, double scale_x, double scale_y, double z) {
+  CpdPose pose;
+  pose.plane.linear() = composeHorizontal({yaw, scale_x, scale_y, 0.0});
+  pose.plane.translation() = Eigen::Vector2d(x, y);
+  pose.height_offset = z;
+  return pose;
+}
+
+Scene makeScene(std::uint64_t seed, const Sampling& fixed, const Sampling& moving,
+                double length = 10.0) {
+  Random random(seed);
+  const std::vector<Plant> plants = makeField(length + 3.0, 8.0, random);
+  Scene scene;
+  scene.truth =
+      makePose(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(-0.3, 0.3),
+               random.uniform(0.8, 1.2), random.uniform(0.8, 1.2), random.uniform(-0.2, 0.2));
+  const Box2 wide(Eigen::Vector2d(-0.5 * length - 1.5, -4.0),
+                  Eigen::Vector2d(0.5 * length + 1.5, 4.0));
+  const Box2 strip(Eigen::Vector2d(-0.5 * length, -1.0), Eigen::Vector2d(0.5 * length, 1.0));
+  scene.fixed = sample(plants, wide, fixed, random);
+  scene.moving = sample(plants, strip, moving, random);
+  const Eigen::Affine2d inverse = scene.truth.plane.inverse();
+  for (VegetationPoint& p : scene.moving) {
+    p.position = inverse * p.position;
+    p.height -= scene.truth.height_offset;
+  }
+  return scene;
+}
+
+/// RMS horizontal displacement over the moving points [m].
+double error(const Scene& scene, const CpdPose& pose) {
+  double sum = 0.0;
+  for (const VegetationPoint& p : scene.moving) {
+    sum += (pose.plane * p.position - scene.truth.plane * p.position).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(scene.moving.size()));
+}
+
+/// The truth, moved about the strip's centre by `shift` [m], `yaw` [rad] and relative `scale`.
+CpdPose disturbed(const Scene& scene, double shift, double yaw, double scale, Random& random) {
+  const auto sign = [&] { return random.chance(0.5) ? 1.0 : -1.0; };
+  const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
+  CpdPose pose = scene.truth;
+  // The strip's centre is the fixed frame's zero.
+  const Eigen::Vector2d centre = scene.truth.plane.inverse() * Eigen::Vector2d::Zero();
+  pose.plane.linear() =
+      composeHorizontal({sign() * yaw, 1.0 + sign() * scale, 1.0 + sign() * scale, 0.0}) *
+      scene.truth.plane.linear();
+  pose.plane.translation() = shift * Eigen::Vector2d(std::cos(direction), std::sin(direction)) -
+                             pose.plane.linear() * centre;
+  pose.height_offset += random.normal(0.03);
+  return pose;
+}
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+const Sampling kDrone{15.0, 0.1, 0.1, 0.02, 0.03};
+const Sampling kRobot{60.0, 0.4, 0.2, 0.005, 0.0};
+
+TEST(Cpd, RecoversAnAffineFromANearStart) {
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    const Scene scene = makeScene(seed, kDrone, kRobot);
+    Random random = Random::stream(17, seed);
+    const CpdPose start = disturbed(scene, random.uniform(0.03, 0.08), 1.0 * kDegree, 0.02, random);
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, {});
+    ASSERT_EQ(result.status, CpdStatus::kConverged) << seed;
+    EXPECT_LT(error(scene, result.pose), 0.01) << seed << ", from " << error(scene, start);
+    EXPECT_NEAR(result.pose.height_offset, scene.truth.height_offset + kDrone.height_bias, 0.02);
+    EXPECT_GT(result.matched_share, 0.5);
+  }
+}
+
+TEST(Cpd, StaysPutAtTheTruth) {
+  for (std::uint64_t seed = 20; seed < 26; ++seed) {
+    const Scene scene = makeScene(seed, kDrone, kRobot);
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving, scene.truth, {});
+    ASSERT_TRUE(result.usable());
+    EXPECT_LT(error(scene, result.pose), 0.01) << seed;
+  }
+}
+
+TEST(Cpd, FindsIdenticalPointsExactly) {
+  Sampling all = kDrone;
+  all.missing = 0.0;
+  Scene scene = makeScene(3, all, kRobot);
+  // The moving points are the fixed ones of the strip: every sampling difference is gone.
+  const Eigen::Affine2d inverse = scene.truth.plane.inverse();
+  scene.moving.clear();
+  for (VegetationPoint p : scene.fixed) {
+    if (std::abs(p.position.x()) > 5.0 || std::abs(p.position.y()) > 1.0) continue;
+    p.position = inverse * p.position;
+    p.height -= scene.truth.height_offset;
+    scene.moving.push_back(p);
+  }
+  Random random(1);
+  CpdOptions options;
+  options.sigma_end = 0.004;
+  options.tolerance = 1e-6;
+  options.max_iterations = 300;
+  const CpdResult result = refineByCpd(
+      scene.fixed, scene.moving, disturbed(scene, 0.05, 0.5 * kDegree, 0.01, random), options);
+  EXPECT_LT(error(scene, result.pose), 5e-4);
+}
+
+TEST(Cpd, DensitiesMayDiffer) {
+  Sampling dense = kDrone;
+  dense.per_plant = 200.0;
+  Sampling sparse = kRobot;
+  sparse.per_plant = 8.0;
+  for (const auto& [fixed, moving] : {std::pair(dense, sparse), std::pair(sparse, dense)}) {
+    const Scene scene = makeScene(5, fixed, moving);
+    Random random(2);
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving,
+                                         disturbed(scene, 0.05, 0.5 * kDegree, 0.015, random), {});
+    ASSERT_TRUE(result.usable());
+    EXPECT_LT(error(scene, result.pose), 0.012);
+  }
+}
+
+TEST(Cpd, EveryModelFindsItsOwnKind) {
+  Scene scene = makeScene(8, kDrone, kRobot);
+  for (const CpdModel model :
+       {CpdModel::kAffine, CpdModel::kScaled, CpdModel::kSimilarity, CpdModel::kRigid}) {
+    const double scale_x = model == CpdModel::kRigid ? 1.0 : 1.1;
+    const double scale_y = model == CpdModel::kAffine || model == CpdModel::kScaled ? 0.9 : scale_x;
+    const CpdPose truth = makePose(0.4, -0.2, 0.2, scale_x, scale_y, 0.1);
+    for (VegetationPoint& p : scene.moving) {
+      p.position = truth.plane.inverse() * (scene.truth.plane * p.position);
+      p.height += scene.truth.height_offset - truth.height_offset;
+    }
+    scene.truth = truth;
+    CpdPose start = truth;
+    start.plane = Eigen::Translation2d(0.03, -0.04) * start.plane;
+    CpdOptions options;
+    options.model = model;
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, options);
+    ASSERT_TRUE(result.usable());
+    EXPECT_LT(error(scene, result.pose), 0.01) << static_cast<int>(model);
+    const HorizontalParts parts = splitHorizontal(result.pose.plane.linear());
+    if (model != CpdModel::kAffine) {
+      EXPECT_NEAR(parts.shear, 0.0, 1e-12);
+    }
+    if (model == CpdModel::kSimilarity) {
+      EXPECT_NEAR(parts.scale_x, parts.scale_y, 1e-12);
+    }
+    if (model == CpdModel::kRigid) {
+      EXPECT_NEAR(parts.scale_x, 1.0, 1e-12);
+    }
+  }
+}
+
+TEST(Cpd, FailuresAreStatuses) {
+  const Scene scene = makeScene(1, kDrone, kRobot);
+  const auto status = [&](const Points& fixed, const Points& moving, const CpdPose& start) {
+    const CpdResult result = refineByCpd(fixed, moving, start, {});
+    EXPECT_FALSE(result.usable());
+    EXPECT_TRUE(result.pose.plane.isApprox(start.plane));
+    return result.status;
+  };
+  EXPECT_EQ(status({}, {}, scene.truth), CpdStatus::kTooFewPoints);
+  EXPECT_EQ(status(scene.fixed, {}, scene.truth), CpdStatus::kTooFewPoints);
+  CpdPose far = scene.truth;
+  far.plane = Eigen::Translation2d(100.0, 0.0) * far.plane;
+  EXPECT_EQ(status(scene.fixed, scene.moving, far), CpdStatus::kTooFewPoints);
+  CpdPose high = scene.truth;
+  high.height_offset += 5.0;
+  EXPECT_EQ(status(scene.fixed, scene.moving, high), CpdStatus::kNoMatches);
+  Points line = scene.moving;
+  for (VegetationPoint& p : line) p.position.y() = 0.0;
+  EXPECT_EQ(status(scene.fixed, line, scene.truth), CpdStatus::kDegenerate);
+  CpdOptions wrong;
+  wrong.sigma_end = 0.2;
+  EXPECT_THROW(refineByCpd(scene.fixed, scene.moving, scene.truth, wrong), UsageError);
+}
+
+TEST(Cpd, ALongWayIsNoRefinement) {
+  const Scene scene = makeScene(1, kDrone, kRobot);
+  CpdPose start = scene.truth;
+  start.plane = Eigen::Translation2d(0.08, 0.0) * start.plane;
+  CpdOptions options;
+  options.max_motion = 0.02;
+  const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, options);
+  EXPECT_EQ(result.status, CpdStatus::kRanAway);
+  EXPECT_TRUE(result.pose.plane.isApprox(start.plane));
+}
+
+TEST(Cpd, IsTheSameOnAnyNumberOfThreads) {
+  const Scene scene = makeScene(2, kDrone, kRobot);
+  Random random(2);
+  const CpdPose start = disturbed(scene, 0.05, 0.5 * kDegree, 0.015, random);
+  CpdResult one;
+  {
+    const ThreadLimit limit(1);
+    one = refineByCpd(scene.fixed, scene.moving, start, {});
+  }
+  const CpdResult all = refineByCpd(scene.fixed, scene.moving, start, {});
+  EXPECT_EQ(one.pose.plane.matrix(), all.pose.plane.matrix());
+  EXPECT_EQ(one.pose.height_offset, all.pose.height_offset);
+}
+
+TEST(Cpd, HundredThousandPointsNeedNoMatrix) {
+  Sampling fixed = kDrone;
+  fixed.per_plant = 120.0;
+  Sampling moving = kRobot;
+  moving.per_plant = 500.0;
+  const Scene scene = makeScene(4, fixed, moving, 20.0);
+  ASSERT_GT(scene.fixed.size(), 100000U);
+  ASSERT_GT(scene.moving.size(), 100000U);
+  Random random(2);
+  const CpdPose start = disturbed(scene, 0.05, 0.3 * kDegree, 0.01, random);
+  CpdOptions options;
+  options.max_points = 1000000;
+  const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, options);
+  EXPECT_LT(error(scene, result.pose), 0.01);
+  EXPECT_EQ(result.moving_points, scene.moving.size());
+  // All pairs would be 10¹⁰ per iteration.
+  EXPECT_LT(static_cast<double>(result.pairs) / result.iterations, 2e8);
+}
+
+TEST(CpdFit, RecoversPosesFromExactPairs) {
+  Random random(9);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Matrix2d axes = rotation2(random.uniform(-3.0, 3.0));
+    const Eigen::Vector2d scales(random.uniform(0.7, 1.3), random.uniform(0.7, 1.3));
+    CpdPose truth;
+    truth.plane.linear() =
+        rotation2(random.uniform(-0.5, 0.5)) * axes * scales.asDiagonal() * axes.transpose();
+    truth.plane.translation() = Eigen::Vector2d(random.normal(), random.normal());
+    truth.height_offset = random.normal();
+    truth.height_scale = random.uniform(0.8, 1.2);
+    CpdMoments moments;
+    for (int k = 0; k < 40; ++k) {
+      const Eigen::Vector3d y(random.normal(), random.normal(), random.normal());
+      Eigen::Vector3d x;
+      x << truth.plane * y.head<2>(), truth.height_scale * y.z() + truth.height_offset;
+      moments.add(random.uniform(0.1, 1.0), y, x);
+    }
+    for (const CpdModel model : {CpdModel::kAffine, CpdModel::kScaled}) {
+      const auto pose = fitCpdPose(moments, model, axes, true);
+      ASSERT_TRUE(pose);
+      EXPECT_TRUE(pose->plane.isApprox(truth.plane, 1e-9));
+      EXPECT_NEAR(pose->height_offset, truth.height_offset, 1e-9);
+      EXPECT_NEAR(pose->height_scale, truth.height_scale, 1e-9);
+    }
+  }
+}
+
+TEST(CpdMixture, SumsAreThoseOfAllPairs) {
+  Random random(6);
+  std::vector<Eigen::Vector4f> points(3000);
+  for (Eigen::Vector4f& p : points) {
+    p = Eigen::Vector4d(random.uniform(-2.0, 2.0), random.uniform(-1.0, 1.0), random.normal(0.1),
+                        random.uniform())
+            .cast<float>();
+  }
+  const CpdWidths widths{0.1F, 0.2F};
+  for (const float bin : {0.03F, 0.1F, 0.5F, 10.0F}) {
+    const CpdMixture mixture(points, bin);
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3d query(random.uniform(-2.5, 2.5), random.uniform(-1.5, 1.5), 0.05);
+      double weight = 0.0;
+      Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector4f& p : points) {
+        const Eigen::Vector3d d = p.head<3>().cast<double>() - query;
+        if (d.head<2>().norm() > 0.3) continue;
+        const double k = static_cast<double>(p.w()) *
+                         std::exp(-d.head<2>().squaredNorm() / 0.02 - d.z() * d.z() / 0.08);
+        weight += k;
+        offset += k * d;
+      }
+      const CpdSums sums = mixture.at(query.cast<float>(), widths);
+      EXPECT_NEAR(static_cast<double>(sums.weight), weight, 1e-3 * weight + 1e-3);
+      if (weight > 0.1) {
+        EXPECT_LT((sums.mean_offset.cast<double>() - offset / weight).norm(), 1e-3);
+      }
+    }
+  }
+}
+
+TEST(CpdMixture, EmptyAndFarPoints) {
+  EXPECT_EQ(CpdMixture({}, 0.1F).at({0.0F, 0.0F, 0.0F}, {}).weight, 0.0F);
+  const CpdMixture far({{0.0F, 0.0F, 0.0F, 1.0F}, {1e6F, 1e6F, 0.0F, 1.0F}}, 0.01F);
+  EXPECT_NEAR(far.at({0.0F, 0.0F, 0.0F}, {}).weight, 1.0F, 1e-5F);
+  EXPECT_EQ(far.at({500.0F, -3e5F, 0.0F}, {}).weight, 0.0F);
+}
+
+}  // namespace
+}  // namespace agricolmap

@@ -1,0 +1,42 @@
+// Stage 7b: dense refinement: Gauss–Newton on the signal maps themselves, coarse to fine, for a
+// horizontal affine. Robust against what the two views do not share (leaves, weeds, shadows).
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "agricolmap/2_grid/signal_map.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+struct DenseRefineOptions {
+  int iterations = 15;         ///< per level at most
+  double robust = 2.0;         ///< residuals beyond this many deviations fade (Cauchy)
+  double stop = 0.002;         ///< done when no corner moves by more than this share of a cell
+  double prior_weight = 1e-3;  ///< pull towards the level's start, share of the data's curvature
+  double max_move = 4.0;       ///< a level may move a corner by this many cells at most
+};
+void describe(OptionTable& table, DenseRefineOptions& options);
+
+enum class RefineStatus { kConverged, kNoOverlap, kDiverged };
+
+struct DenseRefineResult {
+  RefineStatus status = RefineStatus::kNoOverlap;
+  Eigen::Affine2d fixed_from_moving = Eigen::Affine2d::Identity();  ///< meaningful if converged
+  int iterations = 0;
+  double overlap = 0.0;      ///< share of the moving map's seen cells that the fixed map sees
+  double correlation = 0.0;  ///< robustly weighted, over both channels
+  double residual[kSignalChannels] = {};  ///< robust deviation, in deviations of the signal
+  /// Curvature of the cost over (M11, M12, tx, M21, M22, ty), x, y relative to the moving map's
+  /// middle: the inverse is the covariance if residuals of cells were independent.
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// Minimises Σ_channels Σ_cells ρ((fixed(A·x) − gain · moving(x)) / σ) over a horizontal affine A,
+/// from `start`. Both maps at the same cell size, levelled frames.
+DenseRefineResult refineDense(const SignalMap& fixed, const SignalMap& moving,
+                              const Eigen::Affine2d& start, const DenseRefineOptions& options);
+
+}  // namespace agricolmap

@@ -1,0 +1,39 @@
+// Stage 7c: the vertical part of the registration, once the plane is known. Tilt and offset come
+// from the ground; canopy, which looks lower from above than from the side, must not bias them.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "agricolmap/2_grid/grid_map.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+struct VerticalOptions {
+  double ground_window = 0.6;  ///< side of the window whose lowest cells are ground [m]
+  double max_slope = 0.2;      ///< larger tilts between the levelled maps are refused
+  double robust = 2.5;         ///< residuals beyond this many deviations do not count (Tukey)
+};
+void describe(OptionTable& table, VerticalOptions& options);
+
+enum class VerticalStatus { kOk, kTooFewCells, kTooSteep };
+
+/// fixed height = moving height + offset + slope · (p − about), p in the fixed levelled frame.
+struct VerticalResult {
+  VerticalStatus status = VerticalStatus::kTooFewCells;
+  double offset = 0.0;                              ///< at `about` [m]
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< [m/m]
+  Eigen::Vector2d about = Eigen::Vector2d::Zero();  ///< middle of the overlap [m]
+  double canopy_gain =
+      1.0;                ///< how tall the fixed map sees what the moving map sees as 1 m of canopy
+  double residual = 0.0;  ///< robust deviation of the cells from the model [m]
+  std::size_t cells = 0;  ///< cells used
+};
+
+/// Regresses the height difference of the overlapping cells on position and on the canopy's height
+/// as the moving map sees it, and takes the value at no canopy: research notes §2.
+VerticalResult fitVertical(const GridMap& fixed, const GridMap& moving,
+                           const Eigen::Affine2d& fixed_from_moving,
+                           const VerticalOptions& options);
+
+}  // namespace agricolmap

@@ -1,0 +1,163 @@
+#include "agricolmap/7_verdict/evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "agricolmap/core/parallel.hpp"
+
+namespace agricolmap {
+
+void describe(OptionTable& table, EvidenceOptions& options) {
+  table.number("block", options.block, 0.2, 100.0, "m", "side of the blocks that are placed alone");
+  table.number("block_reach", options.block_reach, 0.05, 100.0, "m",
+               "how far from its predicted place a block is looked for");
+  table.number("agreement", options.agreement, 0.01, 100.0, "m",
+               "a block agrees when its best place is this near to the predicted one");
+  table.number("exclusion", options.exclusion, 0.01, 100.0, "m",
+               "other peaks are counted from this distance on");
+  table.group("filter", options.filter);
+}
+
+namespace {
+
+constexpr double kMinSeenShare = 0.3;  // of a block's area, in both maps
+
+double surfaceDeviation(const ComplexRaster& surface) {
+  double sum2 = 0.0;
+  for (const float v : surface.re) sum2 += static_cast<double>(v) * static_cast<double>(v);
+  return std::sqrt(sum2 / static_cast<double>(surface.size()));
+}
+
+/// Highest value within `radius` cells of (col, row); positions outside the map do not count.
+struct Peak {
+  double value = -std::numeric_limits<double>::infinity();
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< (col, row)
+};
+
+template <typename Accept>
+Peak highest(const ComplexRaster& surface, const Fft2& fft, const GridFrame& frame,
+             const Eigen::Vector2d& centre, double radius, const Accept& accept) {
+  Peak peak;
+  const int r0 = std::max(0, static_cast<int>(std::floor(centre.y() - radius)));
+  const int r1 = std::min(frame.rows - 1, static_cast<int>(std::ceil(centre.y() + radius)));
+  const int c0 = std::max(0, static_cast<int>(std::floor(centre.x() - radius)));
+  const int c1 = std::min(frame.cols - 1, static_cast<int>(std::ceil(centre.x() + radius)));
+  for (int r = r0; r <= r1; ++r) {
+    for (int c = c0; c <= c1; ++c) {
+      const Eigen::Vector2d at(c, r);
+      if ((at - centre).norm() > radius || !accept(at)) continue;
+      const auto value =
+          static_cast<double>(surface.re[static_cast<std::size_t>(r) * fft.cols() + c]);
+      if (value > peak.value) peak = {value, at};
+    }
+  }
+  return peak;
+}
+
+}  // namespace
+
+EvidenceMeter::EvidenceMeter(const SignalMap& fixed, const SignalMap& moving,
+                             const EvidenceOptions& options)
+    : moving_(moving),
+      fixed_(fixed),
+      options_(options),
+      filter_(fixed, options.filter),
+      strip_(stripFrame(moving)) {
+  checkOptions(options);
+}
+
+ComplexRaster EvidenceMeter::wholeSurface(const Eigen::Affine2d& pose, Eigen::Vector2d& at) const {
+  Eigen::AlignedBox2d bounds;
+  for (const double u : {-1.0, 1.0}) {
+    for (const double v : {-1.0, 1.0}) {
+      bounds.extend(strip_.world({u * strip_.half_extent.x(), v * strip_.half_extent.y()}));
+    }
+  }
+  const Template piece =
+      makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
+                   options_.filter.height_weight, [](const Eigen::Vector2d&) { return true; });
+  ComplexRaster surface(filter_.fft().size());
+  ComplexRaster scratch(filter_.fft().size());
+  filter_.correlate(piece, surface, scratch);
+  at = fixed_.frame.cellOf(pose * strip_.centre);
+  return surface;
+}
+
+double EvidenceMeter::significance(const Eigen::Affine2d& pose) const {
+  Eigen::Vector2d at;
+  const ComplexRaster surface = wholeSurface(pose, at);
+  const double deviation = surfaceDeviation(surface);
+  const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, 1.5,
+                            [](const Eigen::Vector2d&) { return true; });
+  return deviation > 0.0 ? peak.value / deviation : 0.0;
+}
+
+BlockEvidence EvidenceMeter::placeBlock(const Block& block, const Eigen::Affine2d& pose,
+                                        bool& usable) const {
+  const double cell = fixed_.frame.cell;
+  const Template piece =
+      makeTemplate(moving_, block.centre, pose.linear(), boundsOf(block, strip_), cell,
+                   options_.filter.height_weight,
+                   [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
+  BlockEvidence evidence;
+  evidence.place = pose * block.centre;
+  const Eigen::Vector2d at = fixed_.frame.cellOf(evidence.place);
+  const Eigen::Vector2d size = (block.high - block.low) / cell;
+  const double area = size.prod() * std::abs(pose.linear().determinant());
+  double seen = 0.0;
+  const double half = 0.5 * size.norm();
+  double looked = 0.0;
+  for (int r = static_cast<int>(at.y() - half); r <= static_cast<int>(at.y() + half); ++r) {
+    for (int c = static_cast<int>(at.x() - half); c <= static_cast<int>(at.x() + half); ++c) {
+      looked += 1.0;
+      if (fixed_.weight.contains(r, c) && fixed_.weight(r, c) > 0.0F) seen += 1.0;
+    }
+  }
+  usable = piece.filled >= kMinSeenShare * area && seen >= kMinSeenShare * looked;
+  if (!usable) return evidence;
+  ComplexRaster surface(filter_.fft().size());
+  ComplexRaster scratch(filter_.fft().size());
+  filter_.correlate(piece, surface, scratch);
+  const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, options_.block_reach / cell,
+                            [](const Eigen::Vector2d&) { return true; });
+  evidence.offset = cell * (peak.at - at);
+  evidence.agrees = evidence.offset.norm() <= options_.agreement;
+  return evidence;
+}
+
+Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const SearchSpace& space) const {
+  const double cell = fixed_.frame.cell;
+  Evidence evidence;
+  Eigen::Vector2d at;
+  const ComplexRaster surface = wholeSurface(pose, at);
+  const double deviation = surfaceDeviation(surface);
+  const auto any = [](const Eigen::Vector2d&) { return true; };
+  const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, 1.5, any);
+  // The shifts that the guess allows, about where it puts the strip's middle.
+  const Eigen::Vector2d guess = fixed_.frame.cellOf(strip_.centre);
+  const Peak other = highest(
+      surface, filter_.fft(), fixed_.frame, guess, space.uncertainty.translation / cell,
+      [&](const Eigen::Vector2d& p) { return (p - peak.at).norm() * cell > options_.exclusion; });
+  if (deviation > 0.0) {
+    evidence.significance = peak.value / deviation;
+    // Next to nothing else in reach: compared with one deviation, what chance gives anywhere.
+    evidence.uniqueness = peak.value / std::max(other.value, deviation);
+  }
+  const std::vector<Block> blocks = cutBlocks(moving_, strip_, options_.block);
+  std::vector<BlockEvidence> placed(blocks.size());
+  std::vector<char> usable(blocks.size(), 0);
+  parallelFor(blocks.size(), [&](std::size_t i) {
+    bool ok = false;
+    placed[i] = placeBlock(blocks[i], pose, ok);
+    usable[i] = ok ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (usable[i] == 0) continue;
+    evidence.blocks.push_back(placed[i]);
+    if (placed[i].agrees) ++evidence.agreeing;
+  }
+  return evidence;
+}
+
+}  // namespace agricolmap

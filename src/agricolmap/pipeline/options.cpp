@@ -1,0 +1,46 @@
+#include "agricolmap/pipeline/options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "agricolmap/core/error.hpp"
+
+namespace agricolmap {
+
+void describe(OptionTable& table, RegistrationOptions& options) {
+  table.flag("geometry_only", options.geometry_only,
+             "use heights alone, as clouds without colours need");
+  table.choice("association", options.association, {"correlation", "flow"},
+               "how the moving map is placed: global correlation search or the paper's flow");
+  table.choice("refine", options.refine, {"dense", "cpd", "none"},
+               "how the placement is refined: Gauss-Newton on the maps, or CPD on the vegetation");
+  table.group("prior", options.prior);
+  table.group("level", options.level);
+  table.group("grid", options.grid);
+  table.group("signal", options.signal);
+  table.group("search", options.search);
+  table.group("flow", options.flow);
+  table.group("affine", options.affine);
+  table.group("dense", options.dense);
+  table.group("cpd", options.cpd);
+  table.group("vertical", options.vertical);
+  table.group("evidence", options.evidence);
+  table.group("verdict", options.verdict);
+}
+
+std::vector<std::string> presetNames() { return {"default", "paper"}; }
+
+RegistrationOptions preset(const std::string& name) {
+  RegistrationOptions options;
+  if (name == "default") return options;
+  if (name == "paper") {
+    options.association = AssociationKind::kFlow;
+    options.refine = RefineKind::kCpd;
+    options.grid.exg = ExgKind::kPlain;
+    return options;
+  }
+  throw UsageError(
+      fmt::format("unknown preset '{}'; there are: {}", name, fmt::join(presetNames(), ", ")));
+}
+
+}  // namespace agricolmap

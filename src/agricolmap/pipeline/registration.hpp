@@ -1,0 +1,63 @@
+// The pipeline: from two clouds and an initial guess to a transformation and a verdict.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/core/transform.hpp"
+#include "agricolmap/pipeline/options.hpp"
+
+namespace agricolmap {
+
+/// Frames of a pair. Local frames are the clouds' own axes about their double origins.
+struct PairFrames {
+  Eigen::Affine3d levelled_from_fixed;   ///< fixed local → fixed levelled [m]
+  Eigen::Affine3d levelled_from_moving;  ///< moving local → initial guess → moving levelled [m]
+  Levelling fixed;
+  Levelling moving;
+};
+
+/// What a registration found. `status == kRejected` with `has_transform == false`: no answer at
+/// all.
+struct Registration {
+  Verdict verdict;
+  bool has_transform = false;
+  /// Moving file coordinates → fixed file coordinates [m].
+  Eigen::Affine3d fixed_from_moving;
+  /// The same between the local frames (about the clouds' origins).
+  Eigen::Affine3d local_fixed_from_moving;
+
+  // Parts, relative to the initial guess, at the middle of the moving map.
+  HorizontalParts parts;  ///< yaw [rad], scales along the moving file's axes
+  double vertical_scale = 1.0;
+  Eigen::Vector2d tilt =
+      Eigen::Vector2d::Zero();  ///< slope between the ground planes [rad], x and y
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();   ///< of the moving map's middle [m]
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< that middle, fixed file coordinates [m]
+
+  Evidence evidence;
+  double overlap = 0.0;      ///< share of the moving map's cells that the fixed map sees
+  double correlation = 0.0;  ///< of the dense signals at the end
+  VerticalResult vertical;
+  std::vector<std::pair<std::string, double>> counts;  ///< per stage, in order
+
+  // Kept for pictures and reports.
+  PairFrames frames;
+  GridMap fixed_map;
+  GridMap moving_map;
+  SearchSpace space;
+  AssociationResult association;
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
+};
+
+/// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.
+/// Throws InputError for clouds that cannot be used, UsageError for options outside their limits,
+/// Interrupted. A registration that fails is a rejected result, not an exception.
+Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                            const RegistrationOptions& options, StageTimes& times);
+
+}  // namespace agricolmap
