@@ -34,7 +34,7 @@ Eigen::Vector2d blockSize(const GroundRect& strip, double side) {
 }
 
 void paintStrip(Canvas& canvas, const Scene& scene, const View& view) {
-  LayerRow fixed(scene.fixed.level(1.0 / view.scale), Eigen::Affine2d::Identity(), view);
+  LayerRow fixed(scene.fixed, Eigen::Affine2d::Identity(), view);
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
     fixed.sample(y);
     for (int i = 0; i < view.rect.width; ++i) {

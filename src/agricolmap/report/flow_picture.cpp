@@ -31,7 +31,7 @@ GroundRect region(const Scene& scene) {
 }
 
 void paintDim(Canvas& canvas, const Scene& scene, const View& view) {
-  LayerRow row(scene.fixed.level(1.0 / view.scale), Eigen::Affine2d::Identity(), view);
+  LayerRow row(scene.fixed, Eigen::Affine2d::Identity(), view);
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
     row.sample(y);
     for (int i = 0; i < view.rect.width; ++i) {

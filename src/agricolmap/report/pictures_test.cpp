@@ -220,7 +220,7 @@ TEST(MapLayer, CoarseLevelsKeepPlaceAndMean) {
   EXPECT_EQ(layer.level(0.05).frame.cell, 0.04);
   for (const double scale : {100.0, 20.0, 12.0}) {
     View view{{5, 7, 60, 50}, {8.0, 6.0}, rotation2(0.3), scale};
-    LayerRow row(layer.level(1.0 / scale), Eigen::Affine2d::Identity(), view);
+    LayerRow row(layer, Eigen::Affine2d::Identity(), view);
     row.sample(30);
     const Eigen::Vector2d ground = view.ground({5 + 20.5, 30.5});
     ASSERT_GT(row.seen(20), 0.99F);
@@ -228,7 +228,7 @@ TEST(MapLayer, CoarseLevelsKeepPlaceAndMean) {
     EXPECT_LT((view.ground(view.pixel(ground)) - ground).norm(), 1e-9);
   }
   View north{{0, 0, 10, 10}, {8.0, 15.0}, Eigen::Matrix2d::Identity(), 50.0};
-  LayerRow row(layer.level(0.02), Eigen::Affine2d::Identity(), north);
+  LayerRow row(layer, Eigen::Affine2d::Identity(), north);
   row.sample(5);
   EXPECT_EQ(row.seen(5), 0.0F);
 }

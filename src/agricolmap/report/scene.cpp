@@ -13,7 +13,7 @@
 namespace agricolmap {
 namespace {
 
-constexpr std::size_t kHistogramCells = 100000;
+constexpr std::size_t kHistogramCells = 50000;
 constexpr double kCoarseCell = 0.08;  // for the strip's extent and the insets [m]
 
 bool isConstant(const GridMap& map) {
@@ -57,7 +57,7 @@ ValueRange rangeOf(const MapLayer& layer, PictureValue value) {
     const VegetationThreshold found = vegetationThreshold(sampled(layer.map()), {});
     if (found.status == VegetationStatus::kOk) {
       // The soil's own variation stays dark.
-      range = {0.5 * (found.soil_mean + found.threshold), found.vegetation_mean};
+      range = {0.3 * found.soil_mean + 0.7 * found.threshold, found.vegetation_mean};
     }
   }
   if (!(range.high - range.low > 1e-6)) range.high = range.low + 1e-6;
@@ -65,11 +65,12 @@ ValueRange rangeOf(const MapLayer& layer, PictureValue value) {
 }
 
 GroundRect extentOf(const MapLayer& layer) {
-  const LayerLevel level = layer.level(kCoarseCell);
+  const LayerLevel& level = layer.level(kCoarseCell);
   SignalMap cells;
   cells.frame = level.frame;
   cells.weight = Raster<float>(level.frame.rows, level.frame.cols);
-  std::copy(level.weight, level.weight + cells.weight.size(), cells.weight.begin());
+  std::transform(level.cells.begin(), level.cells.end(), cells.weight.begin(),
+                 [](const LayerCell& cell) { return cell.known; });
   StripFrame strip = stripFrame(cells);
   // An axis has no sign; pictures run from west to east.
   if (strip.axes(0, 0) < 0.0) strip.axes = -strip.axes;
@@ -88,9 +89,9 @@ double detailAt(const LayerLevel& level, const ValueRange& range, const Eigen::V
        r < std::min(level.frame.rows, static_cast<int>(low.y()) + side); ++r) {
     for (int c = std::max(0, static_cast<int>(low.x()));
          c < std::min(level.frame.cols, static_cast<int>(low.x()) + side); ++c) {
-      const std::size_t i = static_cast<std::size_t>(r) * level.frame.cols + c;
-      if (level.weight[i] <= 0.0F) continue;
-      const auto strength = static_cast<double>(range.strength(level.value[i]));
+      const LayerCell& cell = level.cells(r, c);
+      if (cell.known <= 0.0F) continue;
+      const auto strength = static_cast<double>(range.strength(cell.weighted / cell.known));
       sum += strength;
       sum2 += strength * strength;
       count += 1.0;
@@ -130,7 +131,7 @@ Scene::Scene(const Registration& result, const PictureInfo& picture_info)
       fixed_range(rangeOf(fixed, value)),
       moving_range(rangeOf(moving, value)),
       strip(extentOf(moving)) {
-  const LayerLevel level = moving.level(kCoarseCell);
+  const LayerLevel& level = moving.level(kCoarseCell);
   insets = {insetBetween(strip, level, moving_range, -1.0, -0.35),
             insetBetween(strip, level, moving_range, 0.35, 1.0)};
 }
