@@ -20,23 +20,25 @@ namespace {
 constexpr std::size_t kRowGrain = 8;
 constexpr double kSurfaceSigma = 1.0;  ///< smoothing of the heights before normals [cells]
 constexpr float kKnownShare = 0.25F;   ///< of the smoothing kernel that must be known
-constexpr std::size_t kPadded = 40;    ///< histogram with padding, whole vector registers
+constexpr std::size_t kPadded = 48;    ///< histogram with padding, whole vector registers
 
 /// A neighbour at a fixed place: offset in cells and its share in the weighted sum.
 struct Neighbour {
   int row;
   int col;
-  float distance;  ///< [cells]
+  double distance;  ///< [cells]
 };
 
+/// Every other cell of a disc, as on a chess board: heights are smoothed over a cell, so the cells
+/// between would only repeat what these say.
 std::vector<Neighbour> neighbourhood(double radius) {
   std::vector<Neighbour> result;
   const int reach = static_cast<int>(radius);
   for (int row = -reach; row <= reach; ++row) {
     for (int col = -reach; col <= reach; ++col) {
       const double distance = std::hypot(row, col);
-      if (distance > 0.0 && distance <= radius) {
-        result.push_back({row, col, static_cast<float>(distance)});
+      if (distance > 0.0 && distance <= radius && (row + col) % 2 == 0) {
+        result.push_back({row, col, distance});
       }
     }
   }
@@ -98,7 +100,7 @@ inline float fastAtan2(float y, float x) {
 
 inline int binOf(float value, float low, float width) {
   const int bin = static_cast<int>((value - low) * (static_cast<float>(kFpfhBins) / width));
-  return std::clamp(bin, 0, kFpfhBins - 1);
+  return std::min(std::max(bin, 0), kFpfhBins - 1);
 }
 
 /// Bins of the three angles for one row of cells and one neighbour, and 1 where both points are
@@ -107,7 +109,7 @@ struct BinRow {
   std::vector<int> alpha;
   std::vector<int> phi;
   std::vector<int> theta;
-  std::vector<float> known;
+  std::vector<int> known;
 };
 
 /// The Darboux frame's angles (Rusu et al., Eq. 1): u the normal of the source, which is the point
@@ -126,6 +128,10 @@ void pairAngles(const Surface& s, int row, const Neighbour& n, int first, int la
   const float* y2 = at(s.ny, row + n.row, n.col);
   const float* n2 = at(s.nz, row + n.row, n.col);
   const float* k2 = at(s.known, row + n.row, n.col);
+  int* alpha = out.alpha.data();
+  int* phi_bin = out.phi.data();
+  int* theta_bin = out.theta.data();
+  int* known = out.known.data();
   const auto ex = static_cast<float>(n.col);
   const auto ey = static_cast<float>(n.row);
   const float flat2 = ex * ex + ey * ey;
@@ -157,11 +163,10 @@ void pairAngles(const Surface& s, int row, const Neighbour& n, int first, int la
     const float wz = ux * vy - uy * vx;
     const float phi = sign * (swap ? cos2 : cos1);
     const float theta = fastAtan2(wx * tx + wy * ty + wz * tz, ux * tx + uy * ty + uz * tz);
-    const auto i = static_cast<std::size_t>(c);
-    out.alpha[i] = binOf(vx * tx + vy * ty + vz * tz, -1.0F, 2.0F);
-    out.phi[i] = binOf(phi, -1.0F, 2.0F);
-    out.theta[i] = binOf(theta, -std::numbers::pi_v<float>, 2.0F * std::numbers::pi_v<float>);
-    out.known[i] = k1[c] * k2[c];
+    alpha[c] = binOf(vx * tx + vy * ty + vz * tz, -1.0F, 2.0F);
+    phi_bin[c] = binOf(phi, -1.0F, 2.0F);
+    theta_bin[c] = binOf(theta, -std::numbers::pi_v<float>, 2.0F * std::numbers::pi_v<float>);
+    known[c] = static_cast<int>(k1[c] * k2[c]);
   }
 }
 
@@ -176,7 +181,7 @@ void spfhRow(const Surface& s, const std::vector<Neighbour>& neighbours, int row
     pairAngles(s, row, n, first, last, bins);
     for (int c = first; c < last; ++c) {
       const auto i = static_cast<std::size_t>(c);
-      if (bins.known[i] <= 0.0F) continue;
+      if (bins.known[i] == 0) continue;
       std::uint8_t* cell = counts + i * kPadded;
       ++cell[bins.alpha[i]];
       ++cell[kFpfhBins + bins.phi[i]];
@@ -191,33 +196,51 @@ struct Spfh {
   std::vector<std::uint8_t> pairs;
 };
 
-/// Weighted sum over the neighbours (Rusu et al., Eq. 4): own histogram plus the mean of the
-/// neighbours' over their distance in cells.
-void sumCell(const Spfh& spfh, const std::vector<Neighbour>& neighbours, int row, int col, int rows,
-             int cols, std::uint8_t* out) {
-  std::array<float, kPadded> sum{};
-  const auto add = [&](std::size_t cell, float weight) {
-    const float scale = weight / static_cast<float>(spfh.pairs[cell]);
-    const std::uint8_t* counts = spfh.counts.data() + cell * kPadded;
-    for (std::size_t k = 0; k < kPadded; ++k) sum[k] += scale * static_cast<float>(counts[k]);
-  };
-  const std::size_t own = static_cast<std::size_t>(row) * cols + col;
-  const float share = 1.0F / static_cast<float>(neighbours.size());
-  float total = 1.0F;
-  add(own, 1.0F);
+/// Weights 1/distance of the neighbours, as whole numbers so large that sums of all counts just fit
+/// 16 bits.
+struct SumWeights {
+  std::vector<std::uint16_t> whole;
+  double mean = 0.0;  ///< of 1/distance
+};
+
+SumWeights sumWeights(const std::vector<Neighbour>& neighbours) {
+  const auto count = static_cast<double>(neighbours.size());
+  SumWeights weights;
+  for (const Neighbour& n : neighbours) weights.mean += 1.0 / (count * n.distance);
+  const double scale = 65535.0 / (count * count * weights.mean);
   for (const Neighbour& n : neighbours) {
-    const int r = row + n.row;
-    const int c = col + n.col;
+    weights.whole.push_back(static_cast<std::uint16_t>(scale / n.distance));
+  }
+  return weights;
+}
+
+/// Weighted sum over the neighbours (Rusu et al., Eq. 4): own histogram plus the neighbours', each
+/// over its distance in cells, divided by their number. Neighbours next to holes have fewer pairs
+/// and count that much less.
+void sumCell(const Spfh& spfh, const std::vector<Neighbour>& neighbours, const SumWeights& weights,
+             int row, int col, int rows, int cols, std::uint8_t* out) {
+  alignas(32) std::array<std::uint16_t, kPadded> sum{};
+  unsigned pairs = 0;
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    const int r = row + neighbours[k].row;
+    const int c = col + neighbours[k].col;
     if (r < 0 || c < 0 || r >= rows || c >= cols) continue;
     const std::size_t cell = static_cast<std::size_t>(r) * cols + c;
-    if (spfh.pairs[cell] == 0) continue;
-    const float weight = share / n.distance;
-    add(cell, weight);
-    total += weight;
+    const std::uint8_t* counts = spfh.counts.data() + cell * kPadded;
+    const std::uint16_t weight = weights.whole[k];
+    for (std::size_t j = 0; j < kPadded; ++j) {
+      sum[j] = static_cast<std::uint16_t>(sum[j] + weight * counts[j]);
+    }
+    pairs += static_cast<unsigned>(weight) * spfh.pairs[cell];
   }
-  const float scale = kFpfhScale / total;
-  for (std::size_t k = 0; k < kFpfhSize; ++k) {
-    out[k] = static_cast<std::uint8_t>(std::min(255.0F, scale * sum[k] + 0.5F));
+  const std::size_t own = static_cast<std::size_t>(row) * cols + col;
+  const std::uint8_t* counts = spfh.counts.data() + own * kPadded;
+  const auto around = static_cast<float>(pairs > 0 ? weights.mean / pairs : 0.0);
+  const float here = 1.0F / static_cast<float>(spfh.pairs[own]);
+  const float scale = kFpfhScale / static_cast<float>(1.0 + (pairs > 0 ? weights.mean : 0.0));
+  for (std::size_t j = 0; j < kFpfhSize; ++j) {
+    const float value = here * static_cast<float>(counts[j]) + around * static_cast<float>(sum[j]);
+    out[j] = static_cast<std::uint8_t>(std::min(255.0F, scale * value + 0.5F));
   }
 }
 
@@ -228,13 +251,14 @@ void computeFpfh(const MaskedRaster& height, double cell, const FpfhOptions& opt
   const int rows = height.value.rows();
   const int cols = height.value.cols();
   const auto neighbours = neighbourhood(options.radius);
+  const auto weights = sumWeights(neighbours);
   const Surface surface = surfaceOf(height, cell);
   const std::size_t cells = height.value.size();
   Spfh spfh{std::vector<std::uint8_t>(cells * kPadded), std::vector<std::uint8_t>(cells)};
   parallelFor((static_cast<std::size_t>(rows) + kRowGrain - 1) / kRowGrain, [&](std::size_t band) {
     const auto width = static_cast<std::size_t>(cols);
     BinRow bins{std::vector<int>(width), std::vector<int>(width), std::vector<int>(width),
-                std::vector<float>(width)};
+                std::vector<int>(width)};
     const std::size_t end = std::min(static_cast<std::size_t>(rows), (band + 1) * kRowGrain);
     for (std::size_t row = band * kRowGrain; row < end; ++row) {
       spfhRow(surface, neighbours, static_cast<int>(row), bins,
@@ -249,7 +273,7 @@ void computeFpfh(const MaskedRaster& height, double cell, const FpfhOptions& opt
           const std::size_t i = height.value.index(row, col);
           // A histogram of a few pairs says nothing: half of the neighbours must be there.
           if (2 * spfh.pairs[i] < neighbours.size()) continue;
-          sumCell(spfh, neighbours, row, col, rows, cols,
+          sumCell(spfh, neighbours, weights, row, col, rows, cols,
                   out.bytes.data() + i * DescriptorMap::kStride + DescriptorMap::kFpfhOffset);
           out.known[i] |= DescriptorMap::kFpfhBit;
         }

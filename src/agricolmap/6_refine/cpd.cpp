@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
+#include "agricolmap/6_refine/cpd_accelerate.hpp"
 #include "agricolmap/6_refine/cpd_fit.hpp"
 #include "agricolmap/6_refine/cpd_kernel.hpp"
 #include "agricolmap/core/error.hpp"
@@ -37,7 +39,7 @@ void describe(OptionTable& table, CpdOptions& options) {
                "kernel width of the first iteration: how wrong the start may be");
   table.number("sigma_end", options.sigma_end, 0.002, 5.0, "m", "least kernel width");
   table.number("decay", options.decay, 0.3, 0.99, "",
-               "most of the kernel width that an iteration may leave");
+               "most of the kernel width that is left from one level to the next");
   table.number("sigma_height", options.sigma_height, 0.0, 10.0, "m",
                "deviation of the height differences; 0 leaves the heights out");
   table.flag("vertical_scale", options.vertical_scale,
@@ -47,7 +49,8 @@ void describe(OptionTable& table, CpdOptions& options) {
   table.flag("weights", options.weights, "greener points count more");
   table.integer("max_points", options.max_points, 100, 10000000, "",
                 "points per cloud; more are merged to squares");
-  table.integer("max_iterations", options.max_iterations, 1, 10000, "", "most iterations");
+  table.integer("max_iterations", options.max_iterations, 1, 10000, "",
+                "most iterations at one kernel width");
   table.number("tolerance", options.tolerance, 1e-7, 0.1, "m",
                "motion per iteration that counts as standing still");
   table.number("max_motion", options.max_motion, 0.001, 100.0, "m",
@@ -60,9 +63,8 @@ namespace {
 
 constexpr std::size_t kMinPoints = 20;
 constexpr std::size_t kChunk = 256;
-/// Points are merged to squares of this many σ, and merged anew when σ has shrunk by kRebuild.
+/// Points are merged to squares of this many σ.
 constexpr double kSquare = 0.5;
-constexpr double kRebuild = 0.6;
 /// Side of the squares that measure how much ground the fixed vegetation covers [m].
 constexpr double kCoverSquare = 0.5;
 
@@ -154,15 +156,17 @@ Level makeLevel(const Centred& clouds, double sigma, bool last) {
 /// What one expectation step leaves for the maximisation.
 struct Expectation {
   CpdMoments moments;
-  double weight = 0.0;    ///< of all moving points
-  double square = 0.0;    ///< Σ W·|x − T(y)|² over pairs
-  double residual = 0.0;  ///< Σ W·|x̄ − T(y)|² over moving points
+  double weight = 0.0;      ///< of all moving points
+  double square = 0.0;      ///< Σ W·|x − T(y)|² over pairs
+  double residual = 0.0;    ///< Σ W·|x̄ − T(y)|² over moving points
+  double likelihood = 0.0;  ///< Σ weight·log(kernel sum + outlier term)
   std::size_t pairs = 0;
   Expectation& operator+=(const Expectation& other) {
     moments += other.moments;
     weight += other.weight;
     square += other.square;
     residual += other.residual;
+    likelihood += other.likelihood;
     pairs += other.pairs;
     return *this;
   }
@@ -193,6 +197,7 @@ Expectation expectation(const Level& level, const CpdPose& pose, double sigma, d
           part.pairs += sums.pairs;
           part.weight += p.weight;
           const double found = static_cast<double>(sums.weight);
+          part.likelihood += p.weight * std::log(found + outlier);
           if (!(found > 0.0)) continue;
           const double w = p.weight * found / (found + outlier);
           const Eigen::Vector3d offset = sums.mean_offset.cast<double>();
@@ -225,62 +230,131 @@ CpdPose fromCentred(const CpdPose& pose, const Centred& clouds) {
   return result;
 }
 
-/// Expectation and maximisation until the points stand still at the least σ.
+/// A pose as numbers of like size, all in metres: where three corners of the strip go, the height
+/// offset and the height of 1 m.
+Eigen::VectorXd toVector(const CpdPose& pose, const Centred& clouds) {
+  Eigen::VectorXd vector(8);
+  for (int i = 0; i < 3; ++i) {
+    vector.segment<2>(2 * i) = pose.plane * clouds.corners[static_cast<std::size_t>(i)];
+  }
+  vector(6) = pose.height_offset;
+  vector(7) = pose.height_scale;
+  return vector;
+}
+
+CpdPose fromVector(const Eigen::VectorXd& vector, const Centred& clouds) {
+  const Eigen::Vector2d& corner = clouds.corners[0];
+  Eigen::Matrix2d sides;
+  sides << clouds.corners[1] - corner, clouds.corners[2] - corner;
+  Eigen::Matrix2d images;
+  images << vector.segment<2>(2) - vector.head<2>(), vector.segment<2>(4) - vector.head<2>();
+  CpdPose pose;
+  pose.plane.linear() = images * sides.inverse();
+  pose.plane.translation() = vector.head<2>() - pose.plane.linear() * corner;
+  pose.height_offset = vector(6);
+  pose.height_scale = vector(7);
+  return pose;
+}
+
+/// Expectation and maximisation, level by level, until the points stand still at the least σ.
 class Refiner {
  public:
-  Refiner(const Centred& clouds, const CpdOptions& options, const Eigen::Matrix2d& scale_axes)
-      : clouds_(clouds), options_(options), scale_axes_(scale_axes) {}
+  Refiner(const Centred& clouds, const CpdOptions& options, const Eigen::Matrix2d& scale_axes,
+          CpdResult& result)
+      : clouds_(clouds), options_(options), scale_axes_(scale_axes), result_(result) {}
 
-  /// Fills in `result` from `start` (centred clouds); returns the pose.
-  CpdPose run(const CpdPose& start, CpdResult& result) {
+  /// Fills in the result from `start` (centred clouds); returns the pose.
+  CpdPose run(const CpdPose& start) {
+    start_ = start;
     CpdPose pose = start;
     double sigma = options_.sigma_start;
-    std::optional<Level> level;
-    result.status = CpdStatus::kIterationLimit;
-    for (result.iterations = 0; result.iterations < options_.max_iterations;) {
+    for (;;) {
       const bool last = sigma <= options_.sigma_end;
-      if (!level || (last ? level->sigma != sigma : sigma < kRebuild * level->sigma)) {
-        level = makeLevel(clouds_, sigma, last);
-      }
-      const Expectation sums = expectation(
-          *level, pose, sigma, outlierTerm(clouds_, sigma, options_), options_.sigma_height);
-      ++result.iterations;
-      result.pairs += sums.pairs;
-      record(sums, sigma, result);
-      const std::optional<CpdPose> next =
-          fitCpdPose(sums.moments, options_.model, scale_axes_, options_.vertical_scale);
-      if (!next || result.matched_share < options_.min_matched) {
-        result.status =
-            next || !(sums.moments.weight > 0.0) ? CpdStatus::kNoMatches : CpdStatus::kDegenerate;
+      bool still = false;
+      const double estimate = climb(makeLevel(clouds_, sigma, last), last, pose, still);
+      if (failed_) return pose;
+      if (last) {
+        result_.status = still ? CpdStatus::kConverged : CpdStatus::kIterationLimit;
         return pose;
       }
-      const double step = motionBetween(clouds_, pose, *next);
-      pose = *next;
-      result.motion = motionBetween(clouds_, start, pose);
-      if (result.motion > options_.max_motion) {
-        result.status = CpdStatus::kRanAway;
-        return pose;
-      }
-      if (last && step < options_.tolerance) {
-        result.status = CpdStatus::kConverged;
-        return pose;
-      }
-      const double estimate = std::sqrt(0.5 * sums.square / sums.moments.weight);
-      if (!last) sigma = std::max(options_.sigma_end, std::min(estimate, options_.decay * sigma));
+      sigma = std::max(options_.sigma_end, std::min(estimate, options_.decay * sigma));
     }
-    return pose;
   }
 
  private:
-  static void record(const Expectation& sums, double sigma, CpdResult& result) {
-    result.sigma = sigma;
-    result.matched_share = sums.weight > 0.0 ? sums.moments.weight / sums.weight : 0.0;
-    result.rms = sums.moments.weight > 0.0 ? std::sqrt(sums.residual / sums.moments.weight) : 0.0;
+  /// Iterates at one σ; returns the article's estimate of σ. `still`: stopped moving.
+  double climb(const Level& level, bool last, CpdPose& pose, bool& still) {
+    const double tolerance = last ? options_.tolerance : kCoarseTolerance * level.sigma;
+    const double outlier = outlierTerm(clouds_, level.sigma, options_);
+    AndersonMixer mixer(kMixerMemory);
+    double estimate = level.sigma;
+    CpdPose climbed = pose;  // the last image under EM, which only ever climbs
+    double height = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < options_.max_iterations && !still; ++i) {
+      const Expectation sums =
+          expectation(level, pose, level.sigma, outlier, options_.sigma_height);
+      record(sums, level.sigma);
+      const std::optional<CpdPose> image =
+          fitCpdPose(sums.moments, options_.model, scale_axes_, options_.vertical_scale);
+      const double likelihood = sums.likelihood / sums.weight;
+      if (likelihood < height - kSlack || !image) {
+        if (i == 0 || pose.plane.isApprox(climbed.plane, 0.0)) {
+          if (!image) return fail(sums);
+        } else {
+          // Mixing overshot: back to where EM alone had come to.
+          mixer.restart();
+          pose = climbed;
+          continue;
+        }
+      }
+      if (result_.matched_share < options_.min_matched) return fail(sums);
+      height = likelihood;
+      climbed = *image;
+      estimate = std::sqrt(0.5 * sums.square / sums.moments.weight);
+      const CpdPose mixed = fromVector(
+          mixer.next(toVector(pose, clouds_), toVector(*image, clouds_), level.sigma), clouds_);
+      still = std::max(motionBetween(clouds_, pose, mixed), motionBetween(clouds_, pose, *image)) <
+              tolerance;
+      pose = still ? *image : mixed;
+      result_.motion = motionBetween(clouds_, start_, pose);
+      if (result_.motion > options_.max_motion) {
+        failed_ = true;
+        result_.status = CpdStatus::kRanAway;
+        return estimate;
+      }
+    }
+    // What mixing proposes need not be of the model; what EM returns is.
+    if (!still) pose = climbed;
+    return estimate;
   }
+
+  double fail(const Expectation& sums) {
+    failed_ = true;
+    const bool matched = sums.moments.weight > 0.0 && result_.matched_share >= options_.min_matched;
+    result_.status = matched ? CpdStatus::kDegenerate : CpdStatus::kNoMatches;
+    return 0.0;
+  }
+
+  void record(const Expectation& sums, double sigma) {
+    ++result_.iterations;
+    result_.pairs += sums.pairs;
+    result_.sigma = sigma;
+    result_.matched_share = sums.weight > 0.0 ? sums.moments.weight / sums.weight : 0.0;
+    result_.rms = sums.moments.weight > 0.0 ? std::sqrt(sums.residual / sums.moments.weight) : 0.0;
+  }
+
+  static constexpr std::size_t kMixerMemory = 5;
+  /// Before the last level, standing still means moving less than this share of σ.
+  static constexpr double kCoarseTolerance = 0.02;
+  /// A likelihood (per point) may fall by this much: the kernel's cut-off makes it jump a little.
+  static constexpr double kSlack = 1e-6;
 
   const Centred& clouds_;
   const CpdOptions& options_;
   const Eigen::Matrix2d& scale_axes_;
+  CpdResult& result_;
+  CpdPose start_;
+  bool failed_ = false;
 };
 
 }  // namespace
@@ -300,7 +374,7 @@ CpdResult refineByCpd(const std::vector<VegetationPoint>& fixed,
   result.moving_points = clouds.moving.size();
   if (clouds.fixed.size() < kMinPoints || clouds.moving.size() < kMinPoints) return result;
   const CpdPose refined =
-      Refiner(clouds, options, scale_axes).run(toCentred(start, clouds), result);
+      Refiner(clouds, options, scale_axes, result).run(toCentred(start, clouds));
   if (result.usable()) result.pose = fromCentred(refined, clouds);
   return result;
 }

@@ -4,9 +4,10 @@
 // Three things differ from the article. (1) The fixed points are the mixture and the moving ones
 // the data: the ground robot's strip is covered by the drone's map, not the reverse, and in the
 // article's roles the drone's points around the strip would stretch it. (2) The Gaussians are cut
-// off at 3σ and found through a grid, so the cost is that of the pairs within 3σ. (3) σ shrinks at
-// a set pace from the start's uncertainty at least as fast as the article's estimate of it; points
-// are merged to squares of σ/2 meanwhile, so that the coarse iterations cost next to nothing.
+// off at 3σ and found through a grid, so the cost is that of the pairs within 3σ. (3) σ shrinks
+// level by level from the start's uncertainty, at least as fast as the article's estimate of it;
+// points are merged to squares of σ/2 meanwhile, so that the coarse levels cost next to nothing.
+// Within a level EM is accelerated: it crawls where plants are wider than σ.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -31,17 +32,17 @@ enum class CpdModel {
 struct CpdOptions {
   CpdModel model = CpdModel::kAffine;
   double sigma_start = 0.15;    ///< σ of the first iteration: how wrong the start may be [m]
-  double sigma_end = 0.03;      ///< least σ [m]
-  double decay = 0.85;          ///< most of σ that an iteration may leave
+  double sigma_end = 0.025;     ///< least σ [m]
+  double decay = 0.6;           ///< most of σ that is left from one level to the next
   double sigma_height = 0.15;   ///< deviation of the height difference [m]; 0: heights unused
   bool vertical_scale = false;  ///< estimate a vertical scale beside the offset
-  double outlier_share = 0.2;   ///< w, prior share of moving points without a counterpart
+  double outlier_share = 0.4;   ///< w, prior share of moving points without a counterpart
   bool weights = true;          ///< greener points count more
   int max_points = 40000;       ///< per cloud; more are merged to squares
-  int max_iterations = 80;
-  double tolerance = 1e-4;   ///< motion of the strip's points that counts as standing still [m]
-  double max_motion = 0.5;   ///< motion from the start that is no refinement any more [m]
-  double min_matched = 0.1;  ///< least share of the moving points matched in the end
+  int max_iterations = 50;      ///< at one σ
+  double tolerance = 1e-4;      ///< motion of the strip's points that counts as standing still [m]
+  double max_motion = 0.5;      ///< motion from the start that is no refinement any more [m]
+  double min_matched = 0.1;     ///< least share of the moving points matched in the end
 };
 void describe(OptionTable& table, CpdOptions& options);
 

@@ -10,7 +10,6 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/core/stopwatch.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap {
@@ -120,12 +119,13 @@ CpdPose disturbed(const Scene& scene, double shift, double yaw, double scale, Ra
   const auto sign = [&] { return random.chance(0.5) ? 1.0 : -1.0; };
   const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
   CpdPose pose = scene.truth;
-  const Eigen::Vector2d centre = scene.truth.plane.translation();
+  // The strip's centre is the fixed frame's zero.
+  const Eigen::Vector2d centre = scene.truth.plane.inverse() * Eigen::Vector2d::Zero();
   pose.plane.linear() =
       composeHorizontal({sign() * yaw, 1.0 + sign() * scale, 1.0 + sign() * scale, 0.0}) *
       scene.truth.plane.linear();
-  pose.plane.translation() =
-      centre + shift * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+  pose.plane.translation() = shift * Eigen::Vector2d(std::cos(direction), std::sin(direction)) -
+                             pose.plane.linear() * centre;
   pose.height_offset += random.normal(0.03);
   return pose;
 }
@@ -135,17 +135,230 @@ const Sampling kDrone{15.0, 0.1, 0.1, 0.02, 0.03};
 const Sampling kRobot{60.0, 0.4, 0.2, 0.005, 0.0};
 
 TEST(Cpd, RecoversAnAffineFromANearStart) {
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
     const Scene scene = makeScene(seed, kDrone, kRobot);
     Random random = Random::stream(17, seed);
     const CpdPose start = disturbed(scene, random.uniform(0.03, 0.08), 1.0 * kDegree, 0.02, random);
     const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, {});
-    std::printf("seed %lu: %.1f -> %.2f mm, %d it, share %.2f rms %.1f mm pairs %zu\n", seed,
-                1e3 * error(scene, start), 1e3 * error(scene, result.pose), result.iterations,
-                result.matched_share, 1e3 * result.rms, result.pairs);
     ASSERT_EQ(result.status, CpdStatus::kConverged) << seed;
     EXPECT_LT(error(scene, result.pose), 0.01) << seed << ", from " << error(scene, start);
+    EXPECT_NEAR(result.pose.height_offset, scene.truth.height_offset + kDrone.height_bias, 0.02);
+    EXPECT_GT(result.matched_share, 0.5);
   }
+}
+
+TEST(Cpd, StaysPutAtTheTruth) {
+  for (std::uint64_t seed = 20; seed < 26; ++seed) {
+    const Scene scene = makeScene(seed, kDrone, kRobot);
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving, scene.truth, {});
+    ASSERT_TRUE(result.usable());
+    EXPECT_LT(error(scene, result.pose), 0.01) << seed;
+  }
+}
+
+TEST(Cpd, FindsIdenticalPointsExactly) {
+  Sampling all = kDrone;
+  all.missing = 0.0;
+  Scene scene = makeScene(3, all, kRobot);
+  // The moving points are the fixed ones of the strip: every sampling difference is gone.
+  const Eigen::Affine2d inverse = scene.truth.plane.inverse();
+  scene.moving.clear();
+  for (VegetationPoint p : scene.fixed) {
+    if (std::abs(p.position.x()) > 5.0 || std::abs(p.position.y()) > 1.0) continue;
+    p.position = inverse * p.position;
+    p.height -= scene.truth.height_offset;
+    scene.moving.push_back(p);
+  }
+  Random random(1);
+  CpdOptions options;
+  options.sigma_end = 0.004;
+  options.tolerance = 1e-6;
+  options.max_iterations = 300;
+  const CpdResult result = refineByCpd(
+      scene.fixed, scene.moving, disturbed(scene, 0.05, 0.5 * kDegree, 0.01, random), options);
+  EXPECT_LT(error(scene, result.pose), 5e-4);
+}
+
+TEST(Cpd, DensitiesMayDiffer) {
+  Sampling dense = kDrone;
+  dense.per_plant = 200.0;
+  Sampling sparse = kRobot;
+  sparse.per_plant = 8.0;
+  for (const auto& [fixed, moving] : {std::pair(dense, sparse), std::pair(sparse, dense)}) {
+    const Scene scene = makeScene(5, fixed, moving);
+    Random random(2);
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving,
+                                         disturbed(scene, 0.05, 0.5 * kDegree, 0.015, random), {});
+    ASSERT_TRUE(result.usable());
+    EXPECT_LT(error(scene, result.pose), 0.012);
+  }
+}
+
+TEST(Cpd, EveryModelFindsItsOwnKind) {
+  Scene scene = makeScene(8, kDrone, kRobot);
+  for (const CpdModel model :
+       {CpdModel::kAffine, CpdModel::kScaled, CpdModel::kSimilarity, CpdModel::kRigid}) {
+    const double scale_x = model == CpdModel::kRigid ? 1.0 : 1.1;
+    const double scale_y = model == CpdModel::kAffine || model == CpdModel::kScaled ? 0.9 : scale_x;
+    const CpdPose truth = makePose(0.4, -0.2, 0.2, scale_x, scale_y, 0.1);
+    for (VegetationPoint& p : scene.moving) {
+      p.position = truth.plane.inverse() * (scene.truth.plane * p.position);
+      p.height += scene.truth.height_offset - truth.height_offset;
+    }
+    scene.truth = truth;
+    CpdPose start = truth;
+    start.plane = Eigen::Translation2d(0.03, -0.04) * start.plane;
+    CpdOptions options;
+    options.model = model;
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, options);
+    ASSERT_TRUE(result.usable());
+    EXPECT_LT(error(scene, result.pose), 0.01) << static_cast<int>(model);
+    const HorizontalParts parts = splitHorizontal(result.pose.plane.linear());
+    if (model != CpdModel::kAffine) {
+      EXPECT_NEAR(parts.shear, 0.0, 1e-12);
+    }
+    if (model == CpdModel::kSimilarity) {
+      EXPECT_NEAR(parts.scale_x, parts.scale_y, 1e-12);
+    }
+    if (model == CpdModel::kRigid) {
+      EXPECT_NEAR(parts.scale_x, 1.0, 1e-12);
+    }
+  }
+}
+
+TEST(Cpd, FailuresAreStatuses) {
+  const Scene scene = makeScene(1, kDrone, kRobot);
+  const auto status = [&](const Points& fixed, const Points& moving, const CpdPose& start) {
+    const CpdResult result = refineByCpd(fixed, moving, start, {});
+    EXPECT_FALSE(result.usable());
+    EXPECT_TRUE(result.pose.plane.isApprox(start.plane));
+    return result.status;
+  };
+  EXPECT_EQ(status({}, {}, scene.truth), CpdStatus::kTooFewPoints);
+  EXPECT_EQ(status(scene.fixed, {}, scene.truth), CpdStatus::kTooFewPoints);
+  CpdPose far = scene.truth;
+  far.plane = Eigen::Translation2d(100.0, 0.0) * far.plane;
+  EXPECT_EQ(status(scene.fixed, scene.moving, far), CpdStatus::kTooFewPoints);
+  CpdPose high = scene.truth;
+  high.height_offset += 5.0;
+  EXPECT_EQ(status(scene.fixed, scene.moving, high), CpdStatus::kNoMatches);
+  Points line = scene.moving;
+  for (VegetationPoint& p : line) p.position.y() = 0.0;
+  EXPECT_EQ(status(scene.fixed, line, scene.truth), CpdStatus::kDegenerate);
+  CpdOptions wrong;
+  wrong.sigma_end = 0.2;
+  EXPECT_THROW(refineByCpd(scene.fixed, scene.moving, scene.truth, wrong), UsageError);
+}
+
+TEST(Cpd, ALongWayIsNoRefinement) {
+  const Scene scene = makeScene(1, kDrone, kRobot);
+  CpdPose start = scene.truth;
+  start.plane = Eigen::Translation2d(0.08, 0.0) * start.plane;
+  CpdOptions options;
+  options.max_motion = 0.02;
+  const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, options);
+  EXPECT_EQ(result.status, CpdStatus::kRanAway);
+  EXPECT_TRUE(result.pose.plane.isApprox(start.plane));
+}
+
+TEST(Cpd, IsTheSameOnAnyNumberOfThreads) {
+  const Scene scene = makeScene(2, kDrone, kRobot);
+  Random random(2);
+  const CpdPose start = disturbed(scene, 0.05, 0.5 * kDegree, 0.015, random);
+  CpdResult one;
+  {
+    const ThreadLimit limit(1);
+    one = refineByCpd(scene.fixed, scene.moving, start, {});
+  }
+  const CpdResult all = refineByCpd(scene.fixed, scene.moving, start, {});
+  EXPECT_EQ(one.pose.plane.matrix(), all.pose.plane.matrix());
+  EXPECT_EQ(one.pose.height_offset, all.pose.height_offset);
+}
+
+TEST(Cpd, HundredThousandPointsNeedNoMatrix) {
+  Sampling fixed = kDrone;
+  fixed.per_plant = 120.0;
+  Sampling moving = kRobot;
+  moving.per_plant = 500.0;
+  const Scene scene = makeScene(4, fixed, moving, 20.0);
+  ASSERT_GT(scene.fixed.size(), 100000U);
+  ASSERT_GT(scene.moving.size(), 100000U);
+  Random random(2);
+  const CpdPose start = disturbed(scene, 0.05, 0.3 * kDegree, 0.01, random);
+  CpdOptions options;
+  options.max_points = 1000000;
+  const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, options);
+  EXPECT_LT(error(scene, result.pose), 0.01);
+  EXPECT_EQ(result.moving_points, scene.moving.size());
+  // All pairs would be 10¹⁰ per iteration.
+  EXPECT_LT(static_cast<double>(result.pairs) / result.iterations, 2e8);
+}
+
+TEST(CpdFit, RecoversPosesFromExactPairs) {
+  Random random(9);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Matrix2d axes = rotation2(random.uniform(-3.0, 3.0));
+    const Eigen::Vector2d scales(random.uniform(0.7, 1.3), random.uniform(0.7, 1.3));
+    CpdPose truth;
+    truth.plane.linear() =
+        rotation2(random.uniform(-0.5, 0.5)) * axes * scales.asDiagonal() * axes.transpose();
+    truth.plane.translation() = Eigen::Vector2d(random.normal(), random.normal());
+    truth.height_offset = random.normal();
+    truth.height_scale = random.uniform(0.8, 1.2);
+    CpdMoments moments;
+    for (int k = 0; k < 40; ++k) {
+      const Eigen::Vector3d y(random.normal(), random.normal(), random.normal());
+      Eigen::Vector3d x;
+      x << truth.plane * y.head<2>(), truth.height_scale * y.z() + truth.height_offset;
+      moments.add(random.uniform(0.1, 1.0), y, x);
+    }
+    for (const CpdModel model : {CpdModel::kAffine, CpdModel::kScaled}) {
+      const auto pose = fitCpdPose(moments, model, axes, true);
+      ASSERT_TRUE(pose);
+      EXPECT_TRUE(pose->plane.isApprox(truth.plane, 1e-9));
+      EXPECT_NEAR(pose->height_offset, truth.height_offset, 1e-9);
+      EXPECT_NEAR(pose->height_scale, truth.height_scale, 1e-9);
+    }
+  }
+}
+
+TEST(CpdMixture, SumsAreThoseOfAllPairs) {
+  Random random(6);
+  std::vector<Eigen::Vector4f> points(3000);
+  for (Eigen::Vector4f& p : points) {
+    p = Eigen::Vector4d(random.uniform(-2.0, 2.0), random.uniform(-1.0, 1.0), random.normal(0.1),
+                        random.uniform())
+            .cast<float>();
+  }
+  const CpdWidths widths{0.1F, 0.2F};
+  for (const float bin : {0.03F, 0.1F, 0.5F, 10.0F}) {
+    const CpdMixture mixture(points, bin);
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3d query(random.uniform(-2.5, 2.5), random.uniform(-1.5, 1.5), 0.05);
+      double weight = 0.0;
+      Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector4f& p : points) {
+        const Eigen::Vector3d d = p.head<3>().cast<double>() - query;
+        if (d.head<2>().norm() > 0.3) continue;
+        const double k = static_cast<double>(p.w()) *
+                         std::exp(-d.head<2>().squaredNorm() / 0.02 - d.z() * d.z() / 0.08);
+        weight += k;
+        offset += k * d;
+      }
+      const CpdSums sums = mixture.at(query.cast<float>(), widths);
+      EXPECT_NEAR(static_cast<double>(sums.weight), weight, 1e-3 * weight + 1e-3);
+      if (weight > 0.1) {
+        EXPECT_LT((sums.mean_offset.cast<double>() - offset / weight).norm(), 1e-3);
+      }
+    }
+  }
+}
+
+TEST(CpdMixture, EmptyAndFarPoints) {
+  EXPECT_EQ(CpdMixture({}, 0.1F).at({0.0F, 0.0F, 0.0F}, {}).weight, 0.0F);
+  const CpdMixture far({{0.0F, 0.0F, 0.0F, 1.0F}, {1e6F, 1e6F, 0.0F, 1.0F}}, 0.01F);
+  EXPECT_NEAR(far.at({0.0F, 0.0F, 0.0F}, {}).weight, 1.0F, 1e-5F);
+  EXPECT_EQ(far.at({500.0F, -3e5F, 0.0F}, {}).weight, 0.0F);
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ enum class VegetationStatus {
 std::string_view describe(VegetationStatus status);
 
 struct VegetationOptions {
-  /// Least (mean of plants − mean of soil)/(robust deviation of soil). A single normal population
-  /// split in two has 2.7, real soil and meaningless colours had 2.7–4.4, real crops 4.5–24.
-  double min_contrast = 4.4;
+  /// Least (mean of plants − mean of soil)/(robust deviation of soil). One normal population split
+  /// in two has 2.7; real soil and meaningless colours had 2.7–3.1, real crops 4.4–24.
+  double min_contrast = 3.4;
   double min_share = 0.005;  ///< of vegetation and of soil among the filled cells
 };
 void describe(OptionTable& table, VegetationOptions& options);

@@ -1,0 +1,14 @@
+// Options as a Markdown table, for the documentation.
+#pragma once
+
+#include <string>
+
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+/// One row per option: name, value, unit, limits, meaning. Give a table over default options to
+/// document the defaults.
+std::string toMarkdown(const OptionTable& table);
+
+}  // namespace agricolmap

@@ -1,0 +1,28 @@
+// Options as text: what files and the command line share.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+/// The value as YAML and the command line write it; parseOption reads back the same bits.
+std::string optionText(const OptionField& field);
+
+/// What values are allowed: `0.005 to 1`, `plain or chromatic`, `true or false`.
+std::string limitsText(const OptionField& field);
+
+/// Checks `text` against the type and limits of `field` and returns what sets the value, so that a
+/// caller can check everything before changing anything. Throws UsageError naming the option.
+std::function<void()> parseOption(const OptionField& field, std::string_view text);
+
+/// The path that was most likely meant by an unknown one; empty when none is near.
+std::string closestPath(const OptionTable& table, std::string_view path);
+
+/// ` (did you mean 'grid.cell'?)` or, when none is near, nothing.
+std::string suggestion(const OptionTable& table, std::string_view path);
+
+}  // namespace agricolmap

@@ -1,0 +1,150 @@
+#include "agricolmap/config/yaml.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "agricolmap/config/text.hpp"
+#include "agricolmap/core/error.hpp"
+
+namespace agricolmap {
+namespace {
+
+int lineOf(const YAML::Node& node) { return node.Mark().line + 1; }
+
+/// Checks a document against a table, then sets everything at once.
+class Loader {
+ public:
+  Loader(const std::string& name, const OptionTable& table) : name_(name), table_(table) {}
+
+  void read(const YAML::Node& root) {
+    if (root.IsNull()) return;
+    if (!root.IsMap())
+      fail(lineOf(root), "expected a map of options, such as 'grid: {cell: 0.02}'");
+    readMap(root, "");
+  }
+  void apply() const {
+    for (const std::function<void()>& setter : setters_) setter();
+  }
+
+ private:
+  [[noreturn]] void fail(int line, const std::string& message) const {
+    throw UsageError(fmt::format("{}:{}: {}", name_, line, message));
+  }
+
+  // The depth is that of the table, since a map must be a group of it: aliases cannot loop.
+  void readMap(const YAML::Node& map, const std::string& prefix) {  // NOLINT(misc-no-recursion)
+    for (const auto& entry : map) {
+      const int line = lineOf(entry.first);
+      if (!entry.first.IsScalar()) fail(line, "the name of an option must be plain text");
+      const std::string path = prefix + entry.first.Scalar();
+      if (const OptionField* field = table_.find(path)) {
+        readValue(*field, entry.second, line);
+      } else if (!isGroup(path)) {
+        fail(line, fmt::format("unknown option '{}'{}", path, suggestion(table_, path)));
+      } else if (entry.second.IsMap()) {
+        readMap(entry.second, path + ".");
+      } else if (!entry.second.IsNull()) {
+        fail(line, fmt::format("'{}' is a group of options and needs a map, not a value", path));
+      }
+    }
+  }
+
+  void readValue(const OptionField& field, const YAML::Node& value, int line) {
+    const auto [first, is_new] = lines_.try_emplace(field.path, line);
+    if (!is_new) {
+      fail(line, fmt::format("option {} was given in line {} already", field.path, first->second));
+    }
+    if (!value.IsScalar()) {
+      fail(line, fmt::format("option {} needs one value: {}", field.path, limitsText(field)));
+    }
+    try {
+      setters_.push_back(parseOption(field, value.Scalar()));
+    } catch (const UsageError& error) {
+      fail(line, error.what());
+    }
+  }
+
+  bool isGroup(const std::string& path) const {
+    return std::any_of(
+        table_.fields().begin(), table_.fields().end(),
+        [&](const OptionField& field) { return field.path.starts_with(path + "."); });
+  }
+
+  const std::string& name_;
+  const OptionTable& table_;
+  std::vector<std::function<void()>> setters_;
+  std::map<std::string, int> lines_;
+};
+
+std::vector<std::string> partsOf(const std::string& path) {
+  std::vector<std::string> parts;
+  std::istringstream stream(path);
+  for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
+  return parts;
+}
+
+/// One line, as a comment may not continue by itself.
+std::string oneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+void loadYaml(const std::filesystem::path& file, OptionTable& table) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  // A folder opens like a file and only fails on reading; of an empty file nothing can be read.
+  if (!stream || std::filesystem::is_directory(file) ||
+      (stream.peek() != std::ifstream::traits_type::eof() && !(text << stream.rdbuf()))) {
+    throw InputError(fmt::format("{}: cannot read this options file", file.string()));
+  }
+  loadYamlText(text.str(), file.string(), table);
+}
+
+void loadYamlText(const std::string& text, const std::string& name, OptionTable& table) {
+  Loader loader(name, table);
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      throw UsageError(
+          fmt::format("{}:{}: a second document ('---') in an options file; put all "
+                      "options into one",
+                      name, lineOf(documents[1])));
+    }
+    if (!documents.empty()) loader.read(documents.front());
+  } catch (const YAML::Exception& error) {
+    throw UsageError(
+        fmt::format("{}:{}: not valid YAML: {}", name, error.mark.line + 1, error.msg));
+  }
+  loader.apply();
+}
+
+std::string dumpYaml(const OptionTable& table) {
+  std::string out;
+  std::vector<std::string> open;  // groups the last line was in
+  for (const OptionField& field : table.fields()) {
+    std::vector<std::string> groups = partsOf(field.path);
+    const std::string name = groups.back();
+    groups.pop_back();
+    const auto same = std::mismatch(open.begin(), open.end(), groups.begin(), groups.end()).first;
+    for (auto i = static_cast<std::size_t>(same - open.begin()); i < groups.size(); ++i) {
+      out += fmt::format("{:{}}{}:\n", "", 2 * i, groups[i]);
+    }
+    open = groups;
+    const std::size_t indent = 2 * groups.size();
+    out += fmt::format("{:{}}# {}; {}\n{:{}}{}: {}\n", "", indent, limitsText(field),
+                       oneLine(field.help), "", indent, name, optionText(field));
+  }
+  return out;
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,24 @@
+// Options from and to YAML: nested maps are the dots of the options' paths.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+/// Sets the options that the file names; the others keep their values. Throws InputError when the
+/// file cannot be read and UsageError, with file, line and remedy, for unknown keys (naming the
+/// closest known one), keys given twice, wrong types and values outside their limits; nothing is
+/// changed then.
+void loadYaml(const std::filesystem::path& file, OptionTable& table);
+
+/// The same for text; `name` stands for the file in messages.
+void loadYamlText(const std::string& text, const std::string& name, OptionTable& table);
+
+/// All options with their values, each under a comment with unit, limits and help. loadYaml reads
+/// back the same values.
+std::string dumpYaml(const OptionTable& table);
+
+}  // namespace agricolmap
