@@ -51,7 +51,7 @@ void paintStrip(Canvas& canvas, const Scene& scene, const View& view) {
 void drawBlock(Canvas& canvas, const Scene& scene, const View& view, const BlockEvidence& block,
                const Eigen::Vector2d& size) {
   const Colour colour = block.agrees ? kAgrees : kDisagrees;
-  const Eigen::Matrix2d linear = scene.registration.pose.linear() * scene.strip.axes;
+  const Eigen::Matrix2d linear = scene.registration.pose.linear() * scene.block_strip.axes;
   std::array<Eigen::Vector2d, 4> corners;
   constexpr std::array<std::array<double, 2>, 4> kSigns = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -120,7 +120,7 @@ void writeBlocksPicture(const std::filesystem::path& path, const Scene& scene) {
   paintStrip(canvas, scene, view);
   {
     const Canvas::Clip clip(canvas, view.rect);
-    const Eigen::Vector2d size = blockSize(scene.strip, scene.info.evidence.block);
+    const Eigen::Vector2d size = blockSize(scene.block_strip, scene.info.evidence.block);
     for (const BlockEvidence& block : result.evidence.blocks) {
       drawBlock(canvas, scene, view, block, size);
     }
@@ -136,8 +136,8 @@ void writeBlocksPicture(const std::filesystem::path& path, const Scene& scene) {
              {{LegendItem::Kind::kArrow, kAgrees, "agrees", {}},
               {LegendItem::Kind::kArrow, kDisagrees, "disagrees", {}},
               {LegendItem::Kind::kLine, hexColour(0xffffff), "limit of agreement", {4.0, 4.0}},
-              {LegendItem::Kind::kSquare,
-               hexColour(0xffffff),
+              {LegendItem::Kind::kText,
+               {},
                fmt::format("offsets drawn {:g} times as long", exaggeration(scene.info.evidence)),
                {}}},
              false);

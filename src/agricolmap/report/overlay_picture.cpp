@@ -49,7 +49,7 @@ class OverlayPainter {
 
   void outline(const View& view, const Stroke& stroke) {
     const Canvas::Clip clip(canvas_, view.rect);
-    std::array<Eigen::Vector2d, 4> corners = scene_.outlineUnder(pose_);
+    std::vector<Eigen::Vector2d> corners = scene_.outlineUnder(pose_);
     for (Eigen::Vector2d& corner : corners) corner = view.pixel(corner);
     canvas_.polygon(corners, stroke);
   }

@@ -14,6 +14,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/report/canvas.hpp"
 #include "agricolmap/report/map_layer.hpp"
+#include "agricolmap/report/outline.hpp"
 #include "agricolmap/report/png_file.hpp"
 #include "agricolmap/report/test_registration.hpp"
 #include "agricolmap/report/utf8.hpp"
@@ -231,6 +232,27 @@ TEST(MapLayer, CoarseLevelsKeepPlaceAndMean) {
   LayerRow row(layer, Eigen::Affine2d::Identity(), north);
   row.sample(5);
   EXPECT_EQ(row.seen(5), 0.0F);
+}
+
+TEST(Outline, SmallestRectangleFollowsTheStrip) {
+  for (const double heading : {0.0, 0.4, 1.5707963267948966, 2.5}) {
+    Random random(1);
+    std::vector<Eigen::Vector2d> points;
+    for (int i = 0; i < 20000; ++i) {
+      points.emplace_back(Eigen::Vector2d(3.0, -2.0) +
+                          rotation2(heading) * Eigen::Vector2d(random.uniform(-5.0, 5.0),
+                                                               random.uniform(-1.0, 1.0)));
+    }
+    const std::vector<Eigen::Vector2d> hull = convexHull(points);
+    EXPECT_LT(hull.size(), 200U);
+    const GroundRect rectangle = smallestRectangle(hull);
+    EXPECT_NEAR(rectangle.half_extent.x(), 5.0, 0.02);
+    EXPECT_NEAR(rectangle.half_extent.y(), 1.0, 0.02);
+    EXPECT_NEAR(std::abs(rectangle.axes.col(0).dot(rotation2(heading).col(0))), 1.0, 1e-4);
+    EXPECT_NEAR(rectangle.axes.determinant(), 1.0, 1e-12);
+    EXPECT_GE(rectangle.axes(0, 0), 0.0);
+    EXPECT_LT((rectangle.centre - Eigen::Vector2d(3.0, -2.0)).norm(), 0.02);
+  }
 }
 
 TEST(Utf8, ReplacesWhatIsNotWellFormed) {
