@@ -33,6 +33,28 @@ Eigen::Vector2d blockSize(const GroundRect& strip, double side) {
   return {cut(strip.half_extent.x()), cut(strip.half_extent.y())};
 }
 
+/// Turned like the blocks; the outline and every block with a rim.
+GroundRect blocksGround(const Scene& scene) {
+  const Registration& result = scene.registration;
+  GroundRect ground;
+  ground.axes.col(0) = (result.pose.linear() * scene.block_strip.axes.col(0)).normalized();
+  if (ground.axes(0, 0) < 0.0) ground.axes.col(0) = -ground.axes.col(0);
+  ground.axes.col(1) = Eigen::Vector2d(-ground.axes(1, 0), ground.axes(0, 0));
+  Box2 box;
+  for (const Eigen::Vector2d& corner : scene.outlineUnder(result.pose)) {
+    box.extend((ground.axes.transpose() * corner).eval());
+  }
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5 * scene.info.evidence.block);
+  for (const BlockEvidence& block : result.evidence.blocks) {
+    const Eigen::Vector2d local = ground.axes.transpose() * block.place;
+    box.extend((local - half).eval());
+    box.extend((local + half).eval());
+  }
+  ground.centre = ground.axes * box.center();
+  ground.half_extent = 0.5 * box.sizes();
+  return ground.grown(kRim);
+}
+
 void paintStrip(Canvas& canvas, const Scene& scene, const View& view) {
   LayerRow fixed(scene.fixed, Eigen::Affine2d::Identity(), view);
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
@@ -104,7 +126,7 @@ void drawText(Canvas& canvas, const Scene& scene, int top) {
 
 void writeBlocksPicture(const std::filesystem::path& path, const Scene& scene) {
   const Registration& result = scene.registration;
-  const GroundRect ground = scene.stripUnder(result.pose).grown(kRim);
+  const GroundRect ground = blocksGround(scene);
   const int height =
       std::clamp(static_cast<int>(kInnerWidth / ground.aspect()), 120, kMaxPanelHeight);
   const int text_lines =

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSmallest = 192;           // no level below this many cells along the longer side
 constexpr std::size_t kFillLevels = 2;   // coarser levels that gaps are filled from
-constexpr float kFillShare = 0.5F;       // least known share of the coarsest of them
+constexpr float kFillShare = 0.2F;       // least known share of the coarsest of them
 constexpr std::size_t kSamples = 10000;  // enough for percentiles
 constexpr std::size_t kRowsAtOnce = 32;
 
