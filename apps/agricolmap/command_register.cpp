@@ -1,5 +1,6 @@
 // agricolmap register FIXED MOVING -o DIR
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <iostream>
@@ -11,7 +12,6 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud_reader.hpp"
 #include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/file_sink.hpp"
 #include "agricolmap/io/matrix_file.hpp"
 #include "agricolmap/io/staged_output.hpp"
 #include "agricolmap/pipeline/registration.hpp"
@@ -81,19 +81,6 @@ void warnOfDropped(const Cloud& cloud) {
                cloud.dropped_points);
 }
 
-RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
-                                  const LoadedPair& pair, const OptionTable& table) {
-  RegistrationReportInfo info;
-  info.version = AGRICOLMAP_VERSION;
-  info.seed = static_cast<std::uint64_t>(globals.seed);
-  info.threads = globals.threads;
-  info.command_line = globals.command_line;
-  info.fixed = cloudReport(pair.fixed, arguments.fixed);
-  info.moving = cloudReport(pair.moving, arguments.moving);
-  info.options = toJson(table);
-  return info;
-}
-
 /// Fills `output` with everything but the report.
 std::vector<std::string> writeResults(const RegisterArguments& arguments,
                                       const RegistrationOptions& options, const LoadedPair& pair,
@@ -115,7 +102,6 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
 }
 
 ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals) {
-  const Stopwatch watch;
   RegistrationOptions options = chosenOptions(arguments, globals);
   const OptionTable table = optionTable(options);
   if (arguments.dump_config) {
@@ -136,14 +122,18 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   warnOfDropped(pair.fixed);
   warnOfDropped(pair.moving);
   const Registration result = registerClouds(pair.fixed, pair.moving, guess, options, times);
-  RegistrationReportInfo info = reportInfo(arguments, globals, pair, table);
-  info.guess = guess;
-  info.guess_source = guess_source;
+  RegistrationReportInfo info;
+  info.version = AGRICOLMAP_VERSION;
+  info.seed = static_cast<std::uint64_t>(globals.seed);
+  info.threads = globals.threads;
+  info.command_line = fmt::format("{}", fmt::join(globals.command_line, " "));
+  info.preset = arguments.preset;
+  info.prior = guess;
+  info.prior_source = guess_source;
+  info.options = toJson(table);
   info.pictures = writeResults(arguments, options, pair, result, output, times);
-  info.stage_times = times.stages();
-  info.total_time = watch.seconds();
-  info.peak_memory = peakMemoryBytes();
-  writeText(output.path("registration.json"), registrationJson(result, info).dump(2) + "\n");
+  writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result, times,
+                        info);
   throwIfInterrupted();
   std::vector<std::string> stale = pictureNames();
   stale.insert(stale.end(), {"transform.txt", "aligned.ply"});
