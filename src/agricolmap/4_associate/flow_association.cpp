@@ -23,7 +23,7 @@ void describe(OptionTable& table, FlowAssociationOptions& options) {
   table.number("heading_tolerance", options.heading_tolerance_deg, 0.1, 180.0, "deg",
                "heading error to match with without a warp");
   table.number("scale_tolerance", options.scale_tolerance, 0.01, 1.0, "",
-               "scale error to match with without a warp");
+               "scale error to match with without a warp, as a logarithm");
   table.flag("rematch", options.rematch,
              "match again with the moving map laid as each placement found; off in the paper");
   table.integer("seed", options.seed, 0, 2147483647, "", "of the random search");
@@ -62,14 +62,14 @@ std::vector<Eigen::Affine2d> warpsOver(const SearchSpace& space,
   if (!options.warps) return {Eigen::Affine2d::Identity()};
   const PriorUncertainty& u = space.uncertainty;
   const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
-  const std::vector<double> scales = middles(u.scale, options.scale_tolerance);
+  const std::vector<double> scales = middles(logScaleLimit(u), options.scale_tolerance);
   std::vector<Eigen::Affine2d> warps;
   for (const double heading : middles(u.heading_deg, options.heading_tolerance_deg)) {
     for (const double x : scales) {
       for (const double y : scales) {
         Eigen::Affine2d warp = Eigen::Affine2d::Identity();
         warp.linear() = rotation2(heading * std::numbers::pi / 180.0) * axes *
-                        Eigen::Vector2d(1.0 + x, 1.0 + y).asDiagonal() * axes.transpose();
+                        Eigen::Vector2d(std::exp(x), std::exp(y)).asDiagonal() * axes.transpose();
         warp.translation() = space.centre - warp.linear() * space.centre;
         warps.push_back(warp);
       }

@@ -8,7 +8,7 @@
 
 #include "agricolmap/6_refine/cpd_accelerate.hpp"
 #include "agricolmap/6_refine/cpd_fit.hpp"
-#include "agricolmap/6_refine/cpd_kernel.hpp"
+#include "agricolmap/6_refine/cpd_level.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 
@@ -46,6 +46,12 @@ void describe(OptionTable& table, CpdOptions& options) {
              "estimate a vertical scale beside the vertical offset");
   table.number("outlier_share", options.outlier_share, 0.001, 0.95, "",
                "share of moving points expected to have no counterpart, w in CPD");
+  table.number(
+      "border", options.border, 0.0, 10.0, "",
+      "moving points nearer to the edge of their map count only as surroundings of others, "
+      "in kernel widths");
+  table.number("start_weight", options.start_weight, 0.0, 10.0, "",
+               "pull of the start at sigma_start beside that of the matches; fades with the width");
   table.flag("weights", options.weights, "greener points count more");
   table.integer("max_points", options.max_points, 100, 10000000, "",
                 "points per cloud; more are merged to squares");
@@ -63,110 +69,19 @@ namespace {
 
 constexpr std::size_t kMinPoints = 20;
 constexpr std::size_t kChunk = 256;
-/// Points are merged to squares of this many σ.
-constexpr double kSquare = 0.5;
-/// Side of the squares that measure how much ground the fixed vegetation covers [m].
-constexpr double kCoverSquare = 0.5;
-
-using Points = std::vector<VegetationPoint>;
-
-/// Both clouds about origins of their own, so that float kernels lose nothing.
-struct Centred {
-  Points fixed;
-  Points moving;
-  Eigen::Vector2d fixed_origin;
-  Eigen::Vector2d moving_origin;
-  std::array<Eigen::Vector2d, 4> corners;  ///< of the moving points' box
-  double density = 0.0;                    ///< fixed weight per covered ground [1/m²]
-  double height_range = 0.0;               ///< of the fixed points, as of a uniform spread [m]
-};
-
-Box2 boxOf(const Points& points) {
-  Box2 box;
-  for (const VegetationPoint& p : points) box.extend(p.position);
-  return box;
-}
-
-/// The points, cropped, of equal weight if so chosen, and few enough.
-Points prepare(const Points& points, const Box2& crop, const CpdOptions& options) {
-  Points kept;
-  for (const VegetationPoint& p : points) {
-    if (!crop.contains(p.position) || !(p.weight > 0.0)) continue;
-    kept.push_back(p);
-    if (!options.weights) kept.back().weight = 1.0;
-  }
-  return thinToAtMost(kept, static_cast<std::size_t>(options.max_points));
-}
-
-Centred centre(const Points& fixed, const Points& moving, const CpdPose& start,
-               const CpdOptions& options) {
-  Centred result;
-  const Box2 box = boxOf(moving);
-  Box2 crop;
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector2d corner = box.corner(static_cast<Box2::CornerType>(i));
-    crop.extend(start.plane * corner);
-    result.corners[static_cast<std::size_t>(i)] = corner - box.center();
-  }
-  const double margin = options.max_motion + 3.0 * options.sigma_start;
-  crop.min().array() -= margin;
-  crop.max().array() += margin;
-  result.fixed = prepare(fixed, crop, options);
-  result.moving = prepare(moving, box, options);
-  result.moving_origin = box.center();
-  result.fixed_origin = start.plane * box.center();
-  double weight = 0.0;
-  double height = 0.0;
-  double square = 0.0;
-  for (VegetationPoint& p : result.fixed) {
-    p.position -= result.fixed_origin;
-    weight += p.weight;
-    height += p.weight * p.height;
-    square += p.weight * p.height * p.height;
-  }
-  for (VegetationPoint& p : result.moving) p.position -= result.moving_origin;
-  if (weight > 0.0) {
-    const double covered = static_cast<double>(thinVegetation(result.fixed, kCoverSquare).size());
-    result.density = weight / (covered * kCoverSquare * kCoverSquare);
-    height /= weight;
-    result.height_range = std::sqrt(12.0 * std::max(0.0, square / weight - height * height));
-  }
-  return result;
-}
-
-/// The clouds at the resolution of one σ.
-struct Level {
-  double sigma;
-  Points moving;
-  CpdMixture fixed;
-};
-
-Level makeLevel(const Centred& clouds, double sigma, bool last) {
-  const auto coarse = [&](const Points& points) {
-    return last ? points : thinVegetation(points, kSquare * sigma);
-  };
-  std::vector<Eigen::Vector4f> fixed;
-  for (const VegetationPoint& p : coarse(clouds.fixed)) {
-    fixed.emplace_back(
-        Eigen::Vector4d(p.position.x(), p.position.y(), p.height, p.weight).cast<float>());
-  }
-  return {sigma, coarse(clouds.moving), CpdMixture(fixed, static_cast<float>(sigma))};
-}
 
 /// What one expectation step leaves for the maximisation.
 struct Expectation {
   CpdMoments moments;
-  double weight = 0.0;      ///< of all moving points
-  double square = 0.0;      ///< Σ W·|x − T(y)|² over pairs
-  double residual = 0.0;    ///< Σ W·|x̄ − T(y)|² over moving points
-  double likelihood = 0.0;  ///< Σ weight·log(kernel sum + outlier term)
+  double weight = 0.0;    ///< of all moving points
+  double square = 0.0;    ///< Σ W·|x − T(y)|² over pairs
+  double residual = 0.0;  ///< Σ W·|x̄ − T(ȳ)|² over moving points
   std::size_t pairs = 0;
   Expectation& operator+=(const Expectation& other) {
     moments += other.moments;
     weight += other.weight;
     square += other.square;
     residual += other.residual;
-    likelihood += other.likelihood;
     pairs += other.pairs;
     return *this;
   }
@@ -174,7 +89,7 @@ struct Expectation {
 
 /// Posterior of the outliers' uniform distribution, in units of the kernel sum: the article's
 /// c = (2πσ²)^{D/2}·w/(1 − w)·M/V, with the mixture's points per ground for M/V.
-double outlierTerm(const Centred& clouds, double sigma, const CpdOptions& options) {
+double outlierTerm(const CpdClouds& clouds, double sigma, const CpdOptions& options) {
   const double horizontal = 2.0 * std::numbers::pi * sigma * sigma * clouds.density;
   const double deviation = options.sigma_height;
   const double width = std::sqrt(2.0 * std::numbers::pi) * deviation;
@@ -183,34 +98,33 @@ double outlierTerm(const Centred& clouds, double sigma, const CpdOptions& option
   return options.outlier_share / (1.0 - options.outlier_share) * horizontal * vertical;
 }
 
-Expectation expectation(const Level& level, const CpdPose& pose, double sigma, double outlier,
+Expectation expectation(const CpdLevel& level, const CpdPose& pose, double sigma, double outlier,
                         double sigma_height) {
   const CpdWidths widths{static_cast<float>(sigma), static_cast<float>(sigma_height)};
   return parallelSum(
-      level.moving.size(), kChunk, Expectation{}, [&](std::size_t begin, std::size_t end) {
+      level.data.size(), kChunk, Expectation{}, [&](std::size_t begin, std::size_t end) {
         Expectation part;
         for (std::size_t i = begin; i < end; ++i) {
-          const VegetationPoint& p = level.moving[i];
-          Eigen::Vector3d moved;
-          moved << pose.plane * p.position, pose.height_scale * p.height + pose.height_offset;
+          const VegetationPoint& p = level.data[i].point;
+          const Eigen::Vector3d& mean = level.data[i].mean;
+          const Eigen::Vector3d moved = applyPose(pose, p.position, p.height);
           const CpdSums sums = level.fixed.at(moved.cast<float>(), widths);
           part.pairs += sums.pairs;
           part.weight += p.weight;
           const double found = static_cast<double>(sums.weight);
-          part.likelihood += p.weight * std::log(found + outlier);
           if (!(found > 0.0)) continue;
           const double w = p.weight * found / (found + outlier);
-          const Eigen::Vector3d offset = sums.mean_offset.cast<double>();
-          part.moments.add(w, {p.position.x(), p.position.y(), p.height}, moved + offset);
+          const Eigen::Vector3d target = moved + sums.mean_offset.cast<double>();
+          part.moments.add(w, mean, target);
           part.square += w * static_cast<double>(sums.square);
-          part.residual += w * offset.head<2>().squaredNorm();
+          part.residual += w * (target.head<2>() - pose.plane * mean.head<2>()).squaredNorm();
         }
         return part;
       });
 }
 
 /// Largest motion of the moving points between two poses [m].
-double motionBetween(const Centred& clouds, const CpdPose& a, const CpdPose& b) {
+double motionBetween(const CpdClouds& clouds, const CpdPose& a, const CpdPose& b) {
   double motion = 0.0;
   for (const Eigen::Vector2d& corner : clouds.corners) {
     motion = std::max(motion, (a.plane * corner - b.plane * corner).norm());
@@ -218,13 +132,13 @@ double motionBetween(const Centred& clouds, const CpdPose& a, const CpdPose& b) 
   return motion;
 }
 
-CpdPose toCentred(const CpdPose& pose, const Centred& clouds) {
+CpdPose toCentred(const CpdPose& pose, const CpdClouds& clouds) {
   CpdPose result = pose;
   result.plane.translation() = pose.plane * clouds.moving_origin - clouds.fixed_origin;
   return result;
 }
 
-CpdPose fromCentred(const CpdPose& pose, const Centred& clouds) {
+CpdPose fromCentred(const CpdPose& pose, const CpdClouds& clouds) {
   CpdPose result = pose;
   result.plane.translation() += clouds.fixed_origin - pose.plane.linear() * clouds.moving_origin;
   return result;
@@ -232,7 +146,7 @@ CpdPose fromCentred(const CpdPose& pose, const Centred& clouds) {
 
 /// A pose as numbers of like size, all in metres: where three corners of the strip go, the height
 /// offset and the height of 1 m.
-Eigen::VectorXd toVector(const CpdPose& pose, const Centred& clouds) {
+Eigen::VectorXd toVector(const CpdPose& pose, const CpdClouds& clouds) {
   Eigen::VectorXd vector(8);
   for (int i = 0; i < 3; ++i) {
     vector.segment<2>(2 * i) = pose.plane * clouds.corners[static_cast<std::size_t>(i)];
@@ -242,7 +156,7 @@ Eigen::VectorXd toVector(const CpdPose& pose, const Centred& clouds) {
   return vector;
 }
 
-CpdPose fromVector(const Eigen::VectorXd& vector, const Centred& clouds) {
+CpdPose fromVector(const Eigen::VectorXd& vector, const CpdClouds& clouds) {
   const Eigen::Vector2d& corner = clouds.corners[0];
   Eigen::Matrix2d sides;
   sides << clouds.corners[1] - corner, clouds.corners[2] - corner;
@@ -259,7 +173,7 @@ CpdPose fromVector(const Eigen::VectorXd& vector, const Centred& clouds) {
 /// Expectation and maximisation, level by level, until the points stand still at the least σ.
 class Refiner {
  public:
-  Refiner(const Centred& clouds, const CpdOptions& options, const Eigen::Matrix2d& scale_axes,
+  Refiner(const CpdClouds& clouds, const CpdOptions& options, const Eigen::Matrix2d& scale_axes,
           CpdResult& result)
       : clouds_(clouds), options_(options), scale_axes_(scale_axes), result_(result) {}
 
@@ -271,7 +185,8 @@ class Refiner {
     for (;;) {
       const bool last = sigma <= options_.sigma_end;
       bool still = false;
-      const double estimate = climb(makeLevel(clouds_, sigma, last), last, pose, still);
+      const double estimate =
+          climb(makeCpdLevel(clouds_, pose, sigma, last, options_), last, pose, still);
       if (failed_) return pose;
       if (last) {
         result_.status = still ? CpdStatus::kConverged : CpdStatus::kIterationLimit;
@@ -283,39 +198,31 @@ class Refiner {
 
  private:
   /// Iterates at one σ; returns the article's estimate of σ. `still`: stopped moving.
-  double climb(const Level& level, bool last, CpdPose& pose, bool& still) {
+  double climb(const CpdLevel& level, bool last, CpdPose& pose, bool& still) {
     const double tolerance = last ? options_.tolerance : kCoarseTolerance * level.sigma;
     const double outlier = outlierTerm(clouds_, level.sigma, options_);
+    const double relative = level.sigma / options_.sigma_start;
+    const double start_weight = last ? 0.0 : options_.start_weight * relative * relative;
     AndersonMixer mixer(kMixerMemory);
     double estimate = level.sigma;
-    CpdPose climbed = pose;  // the last image under EM, which only ever climbs
-    double height = -std::numeric_limits<double>::infinity();
+    double before = std::numeric_limits<double>::infinity();
+    CpdPose image = pose;
     for (int i = 0; i < options_.max_iterations && !still; ++i) {
-      const Expectation sums =
-          expectation(level, pose, level.sigma, outlier, options_.sigma_height);
+      Expectation sums = expectation(level, pose, level.sigma, outlier, options_.sigma_height);
       record(sums, level.sigma);
-      const std::optional<CpdPose> image =
+      if (start_weight > 0.0) addStart(level, pose, start_weight, sums.moments);
+      const std::optional<CpdPose> fit =
           fitCpdPose(sums.moments, options_.model, scale_axes_, options_.vertical_scale);
-      const double likelihood = sums.likelihood / sums.weight;
-      if (likelihood < height - kSlack || !image) {
-        if (i == 0 || pose.plane.isApprox(climbed.plane, 0.0)) {
-          if (!image) return fail(sums);
-        } else {
-          // Mixing overshot: back to where EM alone had come to.
-          mixer.restart();
-          pose = climbed;
-          continue;
-        }
-      }
-      if (result_.matched_share < options_.min_matched) return fail(sums);
-      height = likelihood;
-      climbed = *image;
+      if (!fit || result_.matched_share < options_.min_matched) return fail();
+      image = *fit;
       estimate = std::sqrt(0.5 * sums.square / sums.moments.weight);
+      const double step = motionBetween(clouds_, pose, image);
+      if (step > 2.0 * before) mixer.restart();  // mixing overshot: plain EM from here
+      before = step;
       const CpdPose mixed = fromVector(
-          mixer.next(toVector(pose, clouds_), toVector(*image, clouds_), level.sigma), clouds_);
-      still = std::max(motionBetween(clouds_, pose, mixed), motionBetween(clouds_, pose, *image)) <
-              tolerance;
-      pose = still ? *image : mixed;
+          mixer.next(toVector(pose, clouds_), toVector(image, clouds_), level.sigma), clouds_);
+      still = std::max(step, motionBetween(clouds_, pose, mixed)) < tolerance;
+      pose = mixed;
       result_.motion = motionBetween(clouds_, start_, pose);
       if (result_.motion > options_.max_motion) {
         failed_ = true;
@@ -324,14 +231,26 @@ class Refiner {
       }
     }
     // What mixing proposes need not be of the model; what EM returns is.
-    if (!still) pose = climbed;
+    pose = image;
     return estimate;
   }
 
-  double fail(const Expectation& sums) {
+  /// Gives every datum a second counterpart, where the start puts it: coarse levels see too little
+  /// of a sparse field to be let free. Heights stay out of it.
+  void addStart(const CpdLevel& level, const CpdPose& pose, double weight,
+                CpdMoments& moments) const {
+    for (const CpdDatum& datum : level.data) {
+      Eigen::Vector3d target;
+      target << start_.plane * datum.mean.head<2>(),
+          pose.height_scale * datum.mean.z() + pose.height_offset;
+      moments.add(weight * datum.point.weight, datum.mean, target);
+    }
+  }
+
+  double fail() {
     failed_ = true;
-    const bool matched = sums.moments.weight > 0.0 && result_.matched_share >= options_.min_matched;
-    result_.status = matched ? CpdStatus::kDegenerate : CpdStatus::kNoMatches;
+    result_.status = result_.matched_share >= options_.min_matched ? CpdStatus::kDegenerate
+                                                                   : CpdStatus::kNoMatches;
     return 0.0;
   }
 
@@ -346,10 +265,8 @@ class Refiner {
   static constexpr std::size_t kMixerMemory = 5;
   /// Before the last level, standing still means moving less than this share of σ.
   static constexpr double kCoarseTolerance = 0.02;
-  /// A likelihood (per point) may fall by this much: the kernel's cut-off makes it jump a little.
-  static constexpr double kSlack = 1e-6;
 
-  const Centred& clouds_;
+  const CpdClouds& clouds_;
   const CpdOptions& options_;
   const Eigen::Matrix2d& scale_axes_;
   CpdResult& result_;
@@ -369,7 +286,7 @@ CpdResult refineByCpd(const std::vector<VegetationPoint>& fixed,
   CpdResult result;
   result.pose = start;
   if (fixed.size() < kMinPoints || moving.size() < kMinPoints) return result;
-  const Centred clouds = centre(fixed, moving, start, options);
+  const CpdClouds clouds = makeCpdClouds(fixed, moving, start, options);
   result.fixed_points = clouds.fixed.size();
   result.moving_points = clouds.moving.size();
   if (clouds.fixed.size() < kMinPoints || clouds.moving.size() < kMinPoints) return result;

@@ -1,13 +1,19 @@
 // Stage 6: affine coherent point drift between vegetation points, from a good start to centimetres
 // (Myronenko & Song, "Point set registration: coherent point drift", TPAMI 2010).
 //
-// Three things differ from the article. (1) The fixed points are the mixture and the moving ones
-// the data: the ground robot's strip is covered by the drone's map, not the reverse, and in the
-// article's roles the drone's points around the strip would stretch it. (2) The Gaussians are cut
-// off at 3σ and found through a grid, so the cost is that of the pairs within 3σ. (3) σ shrinks
-// level by level from the start's uncertainty, at least as fast as the article's estimate of it;
-// points are merged to squares of σ/2 meanwhile, so that the coarse levels cost next to nothing.
-// Within a level EM is accelerated: it crawls where plants are wider than σ.
+// What differs from the article:
+// (1) The fixed points are the mixture and the moving ones the data: the ground robot's strip is
+//     covered by the drone's map, not the reverse, and in the article's roles the drone's points
+//     around the strip would stretch it.
+// (2) The Gaussians are cut off at 3σ and found through a grid: the cost is that of near pairs.
+// (3) σ shrinks level by level from the start's uncertainty, at least as fast as the article's
+//     estimate of it. Points are merged to squares of σ/2 meanwhile, so that coarse levels cost
+//     next to nothing. Within a level EM is accelerated: it crawls where plants are wider than σ.
+// (4) A point is pulled to the mean of the fixed points around it *relative to* the mean of the
+//     moving points around it. Without that, every point runs up the slope of its own plant, and
+//     the map shrinks or stretches by up to a per cent as the plants at its edges happen to lie.
+//     It needs the same surroundings in both maps, so points at the edge of what the moving map
+//     shows only lend their surroundings to others.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -37,6 +43,8 @@ struct CpdOptions {
   double sigma_height = 0.15;   ///< deviation of the height difference [m]; 0: heights unused
   bool vertical_scale = false;  ///< estimate a vertical scale beside the offset
   double outlier_share = 0.4;   ///< w, prior share of moving points without a counterpart
+  double border = 2.0;          ///< nearer than this to the edge of the moving map: no data [σ]
+  double start_weight = 0.05;   ///< pull of the start at sigma_start, per point; 0 at sigma_end
   bool weights = true;          ///< greener points count more
   int max_points = 40000;       ///< per cloud; more are merged to squares
   int max_iterations = 50;      ///< at one σ
@@ -68,8 +76,8 @@ struct CpdResult {
   CpdStatus status = CpdStatus::kTooFewPoints;
   CpdPose pose;                ///< refined; the start unless usable()
   double sigma = 0.0;          ///< of the last iteration [m]
-  double matched_share = 0.0;  ///< mean posterior of not being an outlier, of the moving points
-  double rms = 0.0;            ///< of matched points to the mean of their counterparts [m]
+  double matched_share = 0.0;  ///< mean posterior of not being an outlier, of the data
+  double rms = 0.0;            ///< of what still pulls at the matched points [m]
   double motion = 0.0;         ///< largest motion of a moving point by the refinement [m]
   int iterations = 0;
   std::size_t fixed_points = 0;   ///< used

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -27,7 +28,7 @@ std::string_view describe(VegetationStatus status);
 struct VegetationOptions {
   /// Least (mean of plants − mean of soil)/(robust deviation of soil). One normal population split
   /// in two has 2.7; real soil and meaningless colours had 2.7–3.1, real crops 4.4–24.
-  double min_contrast = 3.4;
+  double min_contrast = 3.1;
   double min_share = 0.005;  ///< of vegetation and of soil among the filled cells
 };
 void describe(OptionTable& table, VegetationOptions& options);
@@ -50,6 +51,9 @@ struct VegetationPoint {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
   double height = 0.0;                                 ///< [m]
   double weight = 0.0;  ///< greenness 0…1 (threshold … mean of vegetation), summed when thinned
+  /// Distance to the nearest ground that the map does not show: nearer than a few kernel widths,
+  /// the map shows only one side of the plants' surroundings [m].
+  double margin = std::numeric_limits<double>::infinity();
 };
 
 struct Vegetation {
@@ -61,7 +65,8 @@ struct Vegetation {
 /// Mask and points of a map; both empty unless the threshold's status is kOk.
 Vegetation extractVegetation(const GridMap& map, const VegetationOptions& options);
 
-/// One point per occupied square of side `voxel`: weighted mean of its points, sum of the weights.
+/// One point per occupied square of side `voxel`: weighted mean of its points, sum of the weights,
+/// least margin.
 /// Squares are anchored at zero and come row by row, so the result depends on nothing else.
 std::vector<VegetationPoint> thinVegetation(const std::vector<VegetationPoint>& points,
                                             double voxel);

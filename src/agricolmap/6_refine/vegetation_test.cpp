@@ -97,6 +97,24 @@ TEST(Vegetation, PointsLieAtTheCentresOfGreenCells) {
   }
 }
 
+TEST(Vegetation, MarginsAreDistancesToUnseenGround) {
+  // Seen: columns 0–199, but for the lower left quarter and single cells that chance left empty.
+  Random random(4);
+  const GridMap map = makeMap(200, 240, [&](int row, int col) {
+    if (col >= 200 || (row < 100 && col < 100) || random.chance(0.1)) return std::nan("");
+    return (random.chance(0.3) ? 0.4 : 0.0) + random.normal(0.02);
+  });
+  const Vegetation vegetation = extractVegetation(map, {});
+  ASSERT_FALSE(vegetation.points.empty());
+  for (const VegetationPoint& p : vegetation.points) {
+    const double x = p.position.x() - 1.0;
+    const double y = p.position.y() + 2.0;
+    const double corner = std::hypot(std::max(0.0, x - 2.0), std::max(0.0, y - 2.0));
+    const double outer = std::min({4.0 - x, 4.0 - y, x, y});
+    EXPECT_NEAR(p.margin, std::min(outer, corner), 0.06 + 0.1 * p.margin) << x << ' ' << y;
+  }
+}
+
 TEST(Vegetation, ThinningKeepsWeightAndCentroid) {
   Random random(3);
   std::vector<VegetationPoint> points(20000);

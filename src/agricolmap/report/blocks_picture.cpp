@@ -33,8 +33,30 @@ Eigen::Vector2d blockSize(const GroundRect& strip, double side) {
   return {cut(strip.half_extent.x()), cut(strip.half_extent.y())};
 }
 
+/// Turned like the blocks; the outline and every block with a rim.
+GroundRect blocksGround(const Scene& scene) {
+  const Registration& result = scene.registration;
+  GroundRect ground;
+  ground.axes.col(0) = (result.pose.linear() * scene.block_strip.axes.col(0)).normalized();
+  if (ground.axes(0, 0) < 0.0) ground.axes.col(0) = -ground.axes.col(0);
+  ground.axes.col(1) = Eigen::Vector2d(-ground.axes(1, 0), ground.axes(0, 0));
+  Box2 box;
+  for (const Eigen::Vector2d& corner : scene.outlineUnder(result.pose)) {
+    box.extend((ground.axes.transpose() * corner).eval());
+  }
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5 * scene.info.evidence.block);
+  for (const BlockEvidence& block : result.evidence.blocks) {
+    const Eigen::Vector2d local = ground.axes.transpose() * block.place;
+    box.extend((local - half).eval());
+    box.extend((local + half).eval());
+  }
+  ground.centre = ground.axes * box.center();
+  ground.half_extent = 0.5 * box.sizes();
+  return ground.grown(kRim);
+}
+
 void paintStrip(Canvas& canvas, const Scene& scene, const View& view) {
-  LayerRow fixed(scene.fixed.level(1.0 / view.scale), Eigen::Affine2d::Identity(), view);
+  LayerRow fixed(scene.fixed, Eigen::Affine2d::Identity(), view);
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
     fixed.sample(y);
     for (int i = 0; i < view.rect.width; ++i) {
@@ -51,7 +73,7 @@ void paintStrip(Canvas& canvas, const Scene& scene, const View& view) {
 void drawBlock(Canvas& canvas, const Scene& scene, const View& view, const BlockEvidence& block,
                const Eigen::Vector2d& size) {
   const Colour colour = block.agrees ? kAgrees : kDisagrees;
-  const Eigen::Matrix2d linear = scene.registration.pose.linear() * scene.strip.axes;
+  const Eigen::Matrix2d linear = scene.registration.pose.linear() * scene.block_strip.axes;
   std::array<Eigen::Vector2d, 4> corners;
   constexpr std::array<std::array<double, 2>, 4> kSigns = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -104,7 +126,7 @@ void drawText(Canvas& canvas, const Scene& scene, int top) {
 
 void writeBlocksPicture(const std::filesystem::path& path, const Scene& scene) {
   const Registration& result = scene.registration;
-  const GroundRect ground = scene.stripUnder(result.pose).grown(kRim);
+  const GroundRect ground = blocksGround(scene);
   const int height =
       std::clamp(static_cast<int>(kInnerWidth / ground.aspect()), 120, kMaxPanelHeight);
   const int text_lines =
@@ -120,7 +142,7 @@ void writeBlocksPicture(const std::filesystem::path& path, const Scene& scene) {
   paintStrip(canvas, scene, view);
   {
     const Canvas::Clip clip(canvas, view.rect);
-    const Eigen::Vector2d size = blockSize(scene.strip, scene.info.evidence.block);
+    const Eigen::Vector2d size = blockSize(scene.block_strip, scene.info.evidence.block);
     for (const BlockEvidence& block : result.evidence.blocks) {
       drawBlock(canvas, scene, view, block, size);
     }
@@ -136,8 +158,8 @@ void writeBlocksPicture(const std::filesystem::path& path, const Scene& scene) {
              {{LegendItem::Kind::kArrow, kAgrees, "agrees", {}},
               {LegendItem::Kind::kArrow, kDisagrees, "disagrees", {}},
               {LegendItem::Kind::kLine, hexColour(0xffffff), "limit of agreement", {4.0, 4.0}},
-              {LegendItem::Kind::kSquare,
-               hexColour(0xffffff),
+              {LegendItem::Kind::kText,
+               {},
                fmt::format("offsets drawn {:g} times as long", exaggeration(scene.info.evidence)),
                {}}},
              false);

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/io/file_sink.hpp"
 #include "agricolmap/report/png_file.hpp"
 #include "agricolmap/report/utf8.hpp"
 
@@ -186,7 +187,10 @@ void Canvas::write(const std::filesystem::path& path) {
   const std::size_t stride =
       static_cast<std::size_t>(cairo_image_surface_get_stride(surface_.get())) /
       sizeof(std::uint32_t);
-  writeBytes(path, encodePng(pixelRow(0), width_, height_, stride));
+  const std::vector<std::uint8_t> png = encodePng(pixelRow(0), width_, height_, stride);
+  FileSink sink(path);
+  sink.write(std::as_bytes(std::span(png)));
+  sink.close();
 }
 
 }  // namespace agricolmap

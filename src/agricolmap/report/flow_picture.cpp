@@ -31,7 +31,7 @@ GroundRect region(const Scene& scene) {
 }
 
 void paintDim(Canvas& canvas, const Scene& scene, const View& view) {
-  LayerRow row(scene.fixed.level(1.0 / view.scale), Eigen::Affine2d::Identity(), view);
+  LayerRow row(scene.fixed, Eigen::Affine2d::Identity(), view);
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
     row.sample(y);
     for (int i = 0; i < view.rect.width; ++i) {
@@ -88,9 +88,9 @@ void drawFlow(Canvas& canvas, const Scene& scene, const View& view) {
   }
 }
 
-void drawOutline(Canvas& canvas, const View& view, const std::array<Eigen::Vector2d, 4>& ground,
+void drawOutline(Canvas& canvas, const View& view, const std::vector<Eigen::Vector2d>& ground,
                  const Stroke& stroke) {
-  std::array<Eigen::Vector2d, 4> corners;
+  std::vector<Eigen::Vector2d> corners(ground.size());
   std::transform(ground.begin(), ground.end(), corners.begin(),
                  [&](const Eigen::Vector2d& p) { return view.pixel(p); });
   canvas.polygon(corners, {stroke.width + 2.0, hexColour(0x000000, 0.5), {}});

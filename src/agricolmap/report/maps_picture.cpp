@@ -64,7 +64,7 @@ void drawMap(Canvas& canvas, const MapLayer& layer, const ValueRange& range, con
               canvas.elided(title, kPanelWidth, {15.0, palette::kInk, true}),
               {15.0, palette::kInk, true, Align::kLeft});
   const View view = fitView(rect, wholeMap(frame));
-  LayerRow row(layer.level(1.0 / view.scale), Eigen::Affine2d::Identity(), view);
+  LayerRow row(layer, Eigen::Affine2d::Identity(), view);
   canvas.paint(rect, [&](int y, std::uint32_t* out) {
     row.sample(y);
     for (int i = 0; i < rect.width; ++i) {

@@ -19,23 +19,20 @@ constexpr int kBigSide = kInnerWidth - kSquare - kGap;
 constexpr int kLegendRoom = 44;
 constexpr std::array<const char*, 2> kInsetNames = {"A", "B"};
 
-/// Single empty cells take their neighbours' values, larger holes are dark.
-float known(float seen) { return std::min(1.0F, 4.0F * seen); }
-
 class OverlayPainter {
  public:
   OverlayPainter(Canvas& canvas, const Scene& scene, const Eigen::Affine2d& pose)
       : canvas_(canvas), scene_(scene), pose_(pose), moving_from_fixed_(pose.inverse()) {}
 
   void paint(const View& view) {
-    LayerRow fixed(scene_.fixed.level(1.0 / view.scale), Eigen::Affine2d::Identity(), view);
-    LayerRow moving(scene_.moving.level(1.0 / view.scale), moving_from_fixed_, view);
+    LayerRow fixed(scene_.fixed, Eigen::Affine2d::Identity(), view);
+    LayerRow moving(scene_.moving, moving_from_fixed_, view);
     canvas_.paint(view.rect, [&](int y, std::uint32_t* out) {
       fixed.sample(y);
       moving.sample(y);
       for (int i = 0; i < view.rect.width; ++i) {
-        const float f = known(fixed.seen(i)) * scene_.fixed_range.strength(fixed.value(i));
-        const float m = known(moving.seen(i)) * scene_.moving_range.strength(moving.value(i));
+        const float f = fixed.seen(i) * scene_.fixed_range.strength(fixed.value(i));
+        const float m = moving.seen(i) * scene_.moving_range.strength(moving.value(i));
         if (moving.seen(i) > 0.5F) {
           const int magenta = 16 + static_cast<int>(236.0F * f);
           const int green = 16 + static_cast<int>(236.0F * m);
@@ -52,7 +49,7 @@ class OverlayPainter {
 
   void outline(const View& view, const Stroke& stroke) {
     const Canvas::Clip clip(canvas_, view.rect);
-    std::array<Eigen::Vector2d, 4> corners = scene_.outlineUnder(pose_);
+    std::vector<Eigen::Vector2d> corners = scene_.outlineUnder(pose_);
     for (Eigen::Vector2d& corner : corners) corner = view.pixel(corner);
     canvas_.polygon(corners, stroke);
   }

@@ -12,9 +12,9 @@ namespace agricolmap {
 
 /// What the pictures say beside what the registration knows.
 struct PictureInfo {
-  std::string fixed_name;    ///< of the fixed cloud, as the user gave it
-  std::string moving_name;   ///< of the moving cloud
-  EvidenceOptions evidence;  ///< those the registration was judged with
+  std::string fixed_name = "fixed map";    ///< the cloud's, as the user gave it
+  std::string moving_name = "moving map";  ///< likewise
+  EvidenceOptions evidence;                ///< those the registration was judged with
 };
 
 /// Names of all files that writePictures may write, e.g. to clear those of an earlier run.
@@ -27,6 +27,7 @@ std::vector<std::string> pictureNames();
 ///  - blocks.png: what the blocks of the moving map say when placed alone.
 /// Without a transform only the first two. Throws OutputError.
 std::vector<std::string> writePictures(const std::filesystem::path& dir,
-                                       const Registration& registration, const PictureInfo& info);
+                                       const Registration& registration,
+                                       const PictureInfo& info = {});
 
 }  // namespace agricolmap

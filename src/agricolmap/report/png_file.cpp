@@ -1,16 +1,10 @@
 #include "agricolmap/report/png_file.hpp"
 
-#include <fmt/format.h>
 #include <zlib.h>
 
 #include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
+#include <new>
 #include <string_view>
-
-#include "agricolmap/core/error.hpp"
 
 namespace agricolmap {
 namespace {
@@ -71,12 +65,6 @@ std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
   return out;
 }
 
-[[noreturn]] void failWriting(const std::filesystem::path& path) {
-  throw OutputError(fmt::format(
-      "{}: cannot be written: {} (check the folder, its permissions and the free space)",
-      path.string(), std::strerror(errno)));
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> encodePng(const std::uint32_t* pixels, int width, int height,
@@ -92,17 +80,6 @@ std::vector<std::uint8_t> encodePng(const std::uint32_t* pixels, int width, int 
   appendChunk(png, "IDAT", deflated(filteredRows(pixels, width, height, stride)));
   appendChunk(png, "IEND", {});
   return png;
-}
-
-void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) failWriting(path);
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const int reason = errno;
-  // A full disk may show only here.
-  const bool closed = std::fclose(file) == 0;
-  if (!written) errno = reason;
-  if (!written || !closed) failWriting(path);
 }
 
 }  // namespace agricolmap

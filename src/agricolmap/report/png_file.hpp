@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
 namespace agricolmap {
@@ -12,8 +11,5 @@ namespace agricolmap {
 /// An 8-bit RGB picture as PNG. `pixels` are 0x00RRGGBB words, top row first, `stride` words apart.
 std::vector<std::uint8_t> encodePng(const std::uint32_t* pixels, int width, int height,
                                     std::size_t stride);
-
-/// Writes a whole file. Throws OutputError with the file and the system's reason.
-void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
 
 }  // namespace agricolmap

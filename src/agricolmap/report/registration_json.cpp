@@ -1,10 +1,12 @@
 #include "agricolmap/report/registration_json.hpp"
 
 #include <sys/resource.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "agricolmap/io/file_sink.hpp"
 #include "agricolmap/report/utf8.hpp"
 
 namespace agricolmap {
@@ -38,15 +40,16 @@ Json stringsJson(const std::vector<std::string>& strings) {
   return json;
 }
 
-Json cloudJson(const CloudReport& cloud, const Levelling& levelling, const GridMap& map) {
+Json cloudJson(const Cloud& cloud, const Levelling& levelling, const GridMap& map) {
   Json json;
-  json["path"] = validUtf8(cloud.path);
-  json["points"] = cloud.points;
+  json["path"] = validUtf8(cloud.name);
+  json["points"] = cloud.size();
   json["dropped_points"] = cloud.dropped_points;
-  json["has_colour"] = cloud.has_colour;
+  json["has_colour"] = cloud.hasColour();
   json["origin_m"] = vectorJson(cloud.origin);
-  json["box_min_m"] = vectorJson(cloud.box_min);
-  json["box_max_m"] = vectorJson(cloud.box_max);
+  const Box3 box = boundingBox(cloud);
+  json["box_min_m"] = vectorJson((cloud.origin + box.min.cast<double>()).eval());
+  json["box_max_m"] = vectorJson((cloud.origin + box.max.cast<double>()).eval());
   json["ground"] = {{"tilt_deg", number(levelling.tilt * kDegPerRad)},
                     {"roughness_m", number(levelling.roughness)},
                     {"cells", levelling.cells}};
@@ -58,13 +61,13 @@ Json cloudJson(const CloudReport& cloud, const Levelling& levelling, const GridM
   return json;
 }
 
-Json transformJson(const Registration& registration, const RegistrationReportInfo& info) {
+Json transformJson(const Cloud& fixed, const Cloud& moving, const Registration& registration) {
   if (!registration.has_transform) return nullptr;
   Json json;
   json["matrix"] = matrixJson(registration.fixed_from_moving.matrix());
   json["local"] = {{"matrix", matrixJson(registration.local_fixed_from_moving.matrix())},
-                   {"fixed_origin_m", vectorJson(info.fixed.origin)},
-                   {"moving_origin_m", vectorJson(info.moving.origin)}};
+                   {"fixed_origin_m", vectorJson(fixed.origin)},
+                   {"moving_origin_m", vectorJson(moving.origin)}};
   const HorizontalParts& parts = registration.parts;
   const Eigen::Vector2d& tilt = registration.tilt;
   json["parts"] = {{"yaw_deg", number(parts.yaw * kDegPerRad)},
@@ -158,48 +161,51 @@ Json numbersJson(const std::vector<std::pair<std::string, double>>& numbers,
   return json;
 }
 
-}  // namespace
-
-CloudReport cloudReport(const Cloud& cloud, std::string path) {
-  CloudReport report;
-  report.path = std::move(path);
-  report.points = cloud.size();
-  report.dropped_points = cloud.dropped_points;
-  report.has_colour = cloud.hasColour();
-  report.origin = cloud.origin;
-  if (!cloud.empty()) {
-    const Box3 box = boundingBox(cloud);
-    report.box_min = cloud.origin + box.min.cast<double>();
-    report.box_max = cloud.origin + box.max.cast<double>();
-  }
-  return report;
+Json timesJson(const StageTimes& times) {
+  double total = 0.0;
+  for (const auto& [stage, seconds] : times.stages()) total += seconds;
+  return {{"total_s", number(total)}, {"stages", numbersJson(times.stages(), "_s")}};
 }
 
-nlohmann::ordered_json registrationJson(const Registration& registration,
+std::size_t threadsInForce(int asked) {
+  if (asked > 0) return static_cast<std::size_t>(asked);
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+}  // namespace
+
+nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
+                                        const Registration& registration, const StageTimes& times,
                                         const RegistrationReportInfo& info) {
   Json json;
   json["format"] = "agricolmap-registration";
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
-  json["transform"] = transformJson(registration, info);
-  json["guess"] = {{"matrix", matrixJson(info.guess.matrix())},
-                   {"source", validUtf8(info.guess_source)}};
+  json["transform"] = transformJson(fixed, moving, registration);
+  json["prior"] = {{"matrix", matrixJson(info.prior.matrix())},
+                   {"source", validUtf8(info.prior_source)}};
   json["residuals"] = residualsJson(registration);
   json["evidence"] = evidenceJson(registration.evidence);
   json["counts"] = numbersJson(registration.counts, "");
-  json["fixed"] = cloudJson(info.fixed, registration.frames.fixed, registration.fixed_map);
-  json["moving"] = cloudJson(info.moving, registration.frames.moving, registration.moving_map);
-  json["times"] = {{"total_s", number(info.total_time)},
-                   {"stages", numbersJson(info.stage_times, "_s")}};
-  json["peak_memory_bytes"] = info.peak_memory;
-  json["threads"] = info.threads;
+  json["fixed"] = cloudJson(fixed, registration.frames.fixed, registration.fixed_map);
+  json["moving"] = cloudJson(moving, registration.frames.moving, registration.moving_map);
+  json["times"] = timesJson(times);
+  json["peak_memory_bytes"] = peakMemoryBytes();
+  json["threads"] = threadsInForce(info.threads);
   json["pictures"] = stringsJson(info.pictures);
   json["version"] = validUtf8(info.version);
   json["seed"] = info.seed;
-  json["command_line"] = stringsJson(info.command_line);
+  json["command_line"] = validUtf8(info.command_line);
+  json["preset"] = validUtf8(info.preset);
   json["options"] = info.options;
   return json;
+}
+
+void writeRegistrationJson(const std::filesystem::path& path, const Cloud& fixed,
+                           const Cloud& moving, const Registration& registration,
+                           const StageTimes& times, const RegistrationReportInfo& info) {
+  writeText(path, registrationJson(fixed, moving, registration, times, info).dump(2) + "\n");
 }
 
 std::size_t peakMemoryBytes() {

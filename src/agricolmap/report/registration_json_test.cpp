@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "agricolmap/core/error.hpp"
 #include "agricolmap/report/test_registration.hpp"
 
 namespace agricolmap {
@@ -15,28 +16,39 @@ RegistrationReportInfo testInfo() {
   RegistrationReportInfo info;
   info.version = "1.2.3";
   info.seed = std::numeric_limits<std::uint64_t>::max();
-  info.command_line = {"agricolmap", "register", "uav.ply", "\xFF.ply"};
-  Cloud cloud;
-  cloud.origin = {432000.1, 5200000.2, 400.3};
-  cloud.xyz = {{0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 0.5F}};
-  cloud.dropped_points = 3;
-  info.fixed = cloudReport(cloud, "uav.ply");
-  cloud.rgb = {{1, 2, 3}, {4, 5, 6}};
-  info.moving = cloudReport(cloud, "\xFF.ply");
-  info.guess.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
-  info.guess_source = "offset.xyz of both clouds";
+  info.command_line = "agricolmap register uav.ply \xFF.ply";
+  info.preset = "default";
+  info.prior.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  info.prior_source = "offset.xyz of both clouds";
   info.options = {{"grid", {{"cell", 0.02}}}};
-  info.stage_times = {{"level", 0.0123}, {"grid", 0.0456}};
-  info.total_time = 0.2;
-  info.peak_memory = 123456789;
   info.threads = 2;
   info.pictures = {"flow.png"};
   return info;
 }
 
+Cloud testCloud(const std::string& name, bool coloured) {
+  Cloud cloud;
+  cloud.name = name;
+  cloud.origin = {432000.1, 5200000.2, 400.3};
+  cloud.xyz = {{0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 0.5F}};
+  if (coloured) cloud.rgb = {{1, 2, 3}, {4, 5, 6}};
+  cloud.dropped_points = 3;
+  return cloud;
+}
+
+Json reportOf(const Registration& registration) {
+  StageTimes times;
+  times.add("level", 0.0123);
+  times.add("grid", 0.0456);
+  // As text and back, as every reader gets it.
+  return Json::parse(registrationJson(testCloud("uav.ply", false), testCloud("\xFF.ply", true),
+                                      registration, times, testInfo())
+                         .dump(2));
+}
+
 TEST(RegistrationJson, AcceptedHasEverything) {
   const Registration registration = testing::testRegistration();
-  const Json json = Json::parse(registrationJson(registration, testInfo()).dump(2));
+  const Json json = reportOf(registration);
   EXPECT_EQ(json["status"], "accepted");
   EXPECT_EQ(json["reasons"].size(), 2U);
   for (const char* key :
@@ -61,12 +73,16 @@ TEST(RegistrationJson, AcceptedHasEverything) {
   EXPECT_EQ(json["moving"]["box_max_m"][1], 5200002.2);
   EXPECT_EQ(json["seed"].get<std::uint64_t>(), std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(json["options"]["grid"]["cell"], 0.02);
-  EXPECT_EQ(json["peak_memory_bytes"], 123456789);
+  EXPECT_GT(json["peak_memory_bytes"], 1 << 20);
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_DOUBLE_EQ(json["times"]["total_s"], 0.0579);
+  EXPECT_EQ(json["prior"]["matrix"][1][3], 0.2);
+  EXPECT_EQ(json["moving"]["path"], "\xEF\xBF\xBD.ply");
 }
 
 TEST(RegistrationJson, MatricesRoundTripToTheLastBit) {
   const Registration registration = testing::testRegistration();
-  const Json json = Json::parse(registrationJson(registration, testInfo()).dump());
+  const Json json = reportOf(registration);
   for (int r = 0; r < 4; ++r) {
     for (int c = 0; c < 4; ++c) {
       EXPECT_EQ(json["transform"]["matrix"][r][c].get<double>(),
@@ -80,7 +96,7 @@ TEST(RegistrationJson, MatricesRoundTripToTheLastBit) {
 TEST(RegistrationJson, RejectedWithoutAnswer) {
   Registration registration;
   registration.verdict = rejectBecause("nothing coherent in common");
-  const Json json = Json::parse(registrationJson(registration, testInfo()).dump());
+  const Json json = reportOf(registration);
   EXPECT_EQ(json["status"], "rejected");
   EXPECT_EQ(json["reasons"], Json{"nothing coherent in common"});
   EXPECT_TRUE(json["transform"].is_null());
@@ -91,7 +107,7 @@ TEST(RegistrationJson, RejectedWithoutAnswer) {
 TEST(RegistrationJson, RejectedWithAnswerKeepsIt) {
   Registration registration = testing::testRegistration();
   registration.verdict.status = Status::kRejected;
-  const Json json = registrationJson(registration, testInfo());
+  const Json json = reportOf(registration);
   EXPECT_EQ(json["status"], "rejected");
   EXPECT_EQ(json["transform"]["matrix"].size(), 4U);
 }
@@ -102,11 +118,18 @@ TEST(RegistrationJson, WhatIsNotFiniteIsNull) {
   registration.evidence.uniqueness = std::numeric_limits<double>::infinity();
   registration.evidence.blocks.clear();
   registration.evidence.agreeing = 0;
-  const Json json = registrationJson(registration, testInfo());
+  const Json json = reportOf(registration);
   EXPECT_TRUE(json["residuals"]["correlation"].is_null());
   EXPECT_TRUE(json["residuals"]["signal"].is_null());
   EXPECT_TRUE(json["residuals"]["block_rms_m"].is_null());
   EXPECT_TRUE(json["evidence"]["uniqueness"].is_null());
+}
+
+TEST(RegistrationJson, FailuresToWriteAreOutputErrors) {
+  const Registration registration = testing::testRegistration();
+  EXPECT_THROW(writeRegistrationJson("/nonexistent/registration.json", testCloud("a", true),
+                                     testCloud("b", true), registration, StageTimes(), testInfo()),
+               OutputError);
 }
 
 TEST(RegistrationJson, PeakMemoryIsPlausible) {

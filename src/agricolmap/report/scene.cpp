@@ -9,11 +9,12 @@
 
 #include "agricolmap/4_associate/correlate/blocks.hpp"
 #include "agricolmap/6_refine/vegetation.hpp"
+#include "agricolmap/report/outline.hpp"
 
 namespace agricolmap {
 namespace {
 
-constexpr std::size_t kHistogramCells = 100000;
+constexpr std::size_t kHistogramCells = 50000;
 constexpr double kCoarseCell = 0.08;  // for the strip's extent and the insets [m]
 
 bool isConstant(const GridMap& map) {
@@ -57,23 +58,45 @@ ValueRange rangeOf(const MapLayer& layer, PictureValue value) {
     const VegetationThreshold found = vegetationThreshold(sampled(layer.map()), {});
     if (found.status == VegetationStatus::kOk) {
       // The soil's own variation stays dark.
-      range = {0.5 * (found.soil_mean + found.threshold), found.vegetation_mean};
+      range = {0.3 * found.soil_mean + 0.7 * found.threshold, found.vegetation_mean};
     }
   }
   if (!(range.high - range.low > 1e-6)) range.high = range.low + 1e-6;
   return range;
 }
 
-GroundRect extentOf(const MapLayer& layer) {
-  const LayerLevel level = layer.level(kCoarseCell);
+/// As EvidenceMeter sees the strip, but for the cell size.
+GroundRect blockStrip(const LayerLevel& level) {
   SignalMap cells;
   cells.frame = level.frame;
   cells.weight = Raster<float>(level.frame.rows, level.frame.cols);
-  std::copy(level.weight, level.weight + cells.weight.size(), cells.weight.begin());
-  StripFrame strip = stripFrame(cells);
-  // An axis has no sign; pictures run from west to east.
-  if (strip.axes(0, 0) < 0.0) strip.axes = -strip.axes;
+  std::transform(level.cells.begin(), level.cells.end(), cells.weight.begin(),
+                 [](const LayerCell& cell) { return cell.known; });
+  const StripFrame strip = stripFrame(cells);
   return {strip.centre, strip.axes, strip.half_extent};
+}
+
+/// Hull of the known cells; without those that hardly have neighbours, such as stray points.
+std::vector<Eigen::Vector2d> outlineOf(const LayerLevel& level) {
+  constexpr int kNeighbours = 3;
+  const auto isKnown = [&](int r, int c) {
+    return level.cells.contains(r, c) && level.cells(r, c).known > 0.0F;
+  };
+  std::vector<Eigen::Vector2d> points;
+  for (int r = 0; r < level.frame.rows; ++r) {
+    for (int c = 0; c < level.frame.cols; ++c) {
+      if (!isKnown(r, c)) continue;
+      int neighbours = -1;
+      for (int dr = -1; dr <= 1; ++dr) {
+        for (int dc = -1; dc <= 1; ++dc) neighbours += isKnown(r + dr, c + dc) ? 1 : 0;
+      }
+      if (neighbours >= kNeighbours) points.push_back(level.frame.centre(r, c));
+    }
+  }
+  if (points.size() >= 3) return convexHull(std::move(points));
+  const Eigen::Vector2d far = level.frame.centre(level.frame.rows - 1, level.frame.cols - 1);
+  const Eigen::Vector2d near = level.frame.centre(0, 0);
+  return {near, {far.x(), near.y()}, far, {near.x(), far.y()}};
 }
 
 /// Deviation of the strength in a square of side kInsetSide, 0 where little of it is seen.
@@ -88,9 +111,9 @@ double detailAt(const LayerLevel& level, const ValueRange& range, const Eigen::V
        r < std::min(level.frame.rows, static_cast<int>(low.y()) + side); ++r) {
     for (int c = std::max(0, static_cast<int>(low.x()));
          c < std::min(level.frame.cols, static_cast<int>(low.x()) + side); ++c) {
-      const std::size_t i = static_cast<std::size_t>(r) * level.frame.cols + c;
-      if (level.weight[i] <= 0.0F) continue;
-      const auto strength = static_cast<double>(range.strength(level.value[i]));
+      const LayerCell& cell = level.cells(r, c);
+      if (cell.known <= 0.0F) continue;
+      const auto strength = static_cast<double>(range.strength(cell.weighted / cell.known));
       sum += strength;
       sum2 += strength * strength;
       count += 1.0;
@@ -129,33 +152,30 @@ Scene::Scene(const Registration& result, const PictureInfo& picture_info)
       moving(result.moving_map, value),
       fixed_range(rangeOf(fixed, value)),
       moving_range(rangeOf(moving, value)),
-      strip(extentOf(moving)) {
-  const LayerLevel level = moving.level(kCoarseCell);
+      outline(outlineOf(moving.level(kCoarseCell))),
+      strip(smallestRectangle(outline)),
+      block_strip(blockStrip(moving.level(kCoarseCell))) {
+  const LayerLevel& level = moving.level(kCoarseCell);
   insets = {insetBetween(strip, level, moving_range, -1.0, -0.35),
             insetBetween(strip, level, moving_range, 0.35, 1.0)};
 }
 
-std::array<Eigen::Vector2d, 4> Scene::outlineUnder(const Eigen::Affine2d& pose) const {
-  std::array<Eigen::Vector2d, 4> corners;
-  constexpr std::array<std::array<double, 2>, 4> kSigns = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Eigen::Vector2d local(kSigns[i][0] * strip.half_extent.x(),
-                                kSigns[i][1] * strip.half_extent.y());
-    corners[i] = pose * (strip.centre + strip.axes * local);
-  }
+std::vector<Eigen::Vector2d> Scene::outlineUnder(const Eigen::Affine2d& pose) const {
+  std::vector<Eigen::Vector2d> corners;
+  for (const Eigen::Vector2d& corner : outline) corners.emplace_back(pose * corner);
   return corners;
 }
 
 GroundRect Scene::stripUnder(const Eigen::Affine2d& pose) const {
   GroundRect placed;
-  placed.centre = pose * strip.centre;
   placed.axes.col(0) = (pose.linear() * strip.axes.col(0)).normalized();
   placed.axes.col(1) = Eigen::Vector2d(-placed.axes(1, 0), placed.axes(0, 0));
-  placed.half_extent.setZero();
+  Box2 box;
   for (const Eigen::Vector2d& corner : outlineUnder(pose)) {
-    placed.half_extent = placed.half_extent.cwiseMax(
-        (placed.axes.transpose() * (corner - placed.centre)).cwiseAbs());
+    box.extend((placed.axes.transpose() * corner).eval());
   }
+  placed.centre = placed.axes * box.center();
+  placed.half_extent = (0.5 * box.sizes()).cwiseMax(registration.moving_map.frame.cell);
   return placed;
 }
 

@@ -34,15 +34,17 @@ class Scene {
   /// Soil is 0 and vegetation 1, each by its own map: cameras differ.
   ValueRange fixed_range;
   ValueRange moving_range;
-  GroundRect strip;  ///< extent of the moving map, levelled moving frame
+  std::vector<Eigen::Vector2d> outline;  ///< corners of the moving map, levelled moving frame [m]
+  GroundRect strip;                      ///< the smallest rectangle around it
+  GroundRect block_strip;                ///< the one that the evidence's blocks are cut along
   /// Middles of two places near the strip's ends with much to see, levelled moving frame [m].
   std::array<Eigen::Vector2d, 2> insets;
 
   const char* valueName() const { return value == PictureValue::kExg ? "Excess Green" : "Height"; }
-  /// The strip as `pose` lays it.
+  /// Turned like the strip as `pose` lays it, the rectangle around its outline.
   GroundRect stripUnder(const Eigen::Affine2d& pose) const;
-  /// Its four corners.
-  std::array<Eigen::Vector2d, 4> outlineUnder(const Eigen::Affine2d& pose) const;
+  /// The outline as `pose` lays it.
+  std::vector<Eigen::Vector2d> outlineUnder(const Eigen::Affine2d& pose) const;
   /// The placement that the pose was refined from; nullptr if there is none.
   const Placement* winner() const;
 };

@@ -56,12 +56,14 @@ inline float decodeAlbedo(std::uint8_t value) {
 struct Canvas {
   Window window;
   Raster<Cell> cells;
-  Raster<float> ground;     ///< height of the soil, with clods [m]
-  Raster<float> sky;        ///< share of the sky seen, on cells four times as large
+  Raster<float> ground;          ///< height of the soil, with clods [m]
+  Raster<std::uint8_t> present;  ///< 0 where nothing is known; empty: known everywhere
+  Raster<float> sky;             ///< share of the sky seen, on cells four times as large
   float leaf_depth = 0.1F;  ///< below this depth under a leaf one can look through the plant [m]
   float sun_share = 0.0F;   ///< sunlight of a surface that faces the sun, total light is 1
   float sky_share = 1.0F;   ///< light of the open sky
 
+  bool isPresent(int row, int col) const { return present.empty() || present(row, col) != 0; }
   /// Light reflected by a cell towards the camera, per channel, linear.
   std::array<float, 3> radiance(int row, int col) const {
     const Cell& c = cells(row, col);

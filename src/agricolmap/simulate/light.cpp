@@ -136,7 +136,7 @@ void fillSky(Canvas& canvas) {
   blurRaster(around, 0.10 / large);
   for (std::size_t i = 0; i < around.size(); ++i) {
     const float depth = around[i] - canvas.sky[i];
-    canvas.sky[i] = std::clamp(1.0F - 4.0F * depth, 0.4F, 1.15F);
+    canvas.sky[i] = std::clamp(1.0F - 6.0F * depth, 0.3F, 1.15F);
   }
 }
 

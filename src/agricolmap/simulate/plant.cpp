@@ -109,9 +109,9 @@ Leaf wheatLeaf(Random& r, float order, float around) {
   Leaf leaf;
   leaf.shape = LeafShape::kBlade;
   leaf.azimuth = around + normal(r, 1.0);
-  leaf.elevation = uniform(r, 1.0, 1.5);
-  leaf.bend = uniform(r, 0.3, 1.5);
-  leaf.length = uniform(r, 0.11, 0.19);
+  leaf.elevation = uniform(r, 1.1, 1.5);
+  leaf.bend = uniform(r, 0.2, 1.3);
+  leaf.length = uniform(r, 0.10, 0.18);
   leaf.width = uniform(r, 0.008, 0.012);
   leaf.base_z = 0.02F + 0.09F * order;
   leaf.roll = normal(r, 0.4);

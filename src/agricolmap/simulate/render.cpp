@@ -53,7 +53,8 @@ class SoilPainter {
              Cell& cell, float& ground) const {
     // Wheels flatten the clods, harrows leave stripes.
     const float rough = clod_height_ * (1.0F - 0.6F * track);
-    const float stripes = tools_(uv.x() / kStripeLength, uv.y() / kStripeWidth) * (1.0F - track);
+    const float stripes =
+        tools_((1.0 / kStripeLength) * uv.x(), (1.0 / kStripeWidth) * uv.y()) * (1.0F - track);
     const float coarse = at(coarse_clods_, point, 0.11);
     const float clods = mix(clods_, own_clods_, point, 0.045);
     const float crumbs = mix(crumbs_, own_crumbs_, point, 0.018);
@@ -93,7 +94,8 @@ class SoilPainter {
             box_.low.y() / feature, box_.high.y() / feature};
   }
   static float at(const NoiseTile& noise, const Eigen::Vector2d& point, double feature) {
-    return noise(point.x() / feature, point.y() / feature);
+    const double scale = 1.0 / feature;  // folded: `feature` is a constant at every call
+    return noise(scale * point.x(), scale * point.y());
   }
   float mix(const NoiseTile& shared, const NoiseTile& own, const Eigen::Vector2d& point,
             double feature) const {

@@ -80,6 +80,7 @@ void describe(OptionTable& t, UgvOptions& o) {
   t.number("edge_density", o.edge_density, 0.01, 1.0, "", "density at the edges over the middle's");
   t.number("smoothing", o.smoothing, 0.0, 0.1, "m", "Gaussian smoothing of heights, deviation");
   t.number("noise", o.noise, 0.0, 0.1, "m", "noise along the viewing ray");
+  t.number("pose_noise", o.pose_noise, 0.0, 0.1, "m", "shift of each camera position's points");
   t.number("side_points", o.side_points, 0.0, 1.0, "",
            "share of steps in height with points on their side");
   t.number("outliers", o.outliers, 0.0, 0.2, "", "fraction of flying points");
@@ -126,7 +127,7 @@ void beetPreset(SimulationOptions& o) {
 
 void wheatPreset(SimulationOptions& o) {
   o.field.row_spacing = 0.125;
-  o.field.plant_spacing = 0.03;
+  o.field.plant_spacing = 0.036;
   o.field.plant_jitter = 0.4;
   o.field.lateral_jitter = 0.008;
   o.field.gaps = 0.08;
@@ -153,7 +154,7 @@ SimulationOptions cropPreset(Crop crop) {
   o.crop = crop;
   switch (crop) {
     case Crop::kSoybean:
-      o.field.straw = 20.0;
+      o.field.straw = 40.0;
       break;
     case Crop::kSugarBeet10m:
       beetPreset(o);

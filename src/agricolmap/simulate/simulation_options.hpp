@@ -90,6 +90,7 @@ struct UgvOptions {
   double edge_density = 0.4;   ///< density at the strip's edges over that in its middle
   double smoothing = 0.005;    ///< Gaussian smoothing of heights, deviation [m]
   double noise = 0.003;        ///< noise along the viewing ray [m]
+  double pose_noise = 0.003;   ///< shift of each camera position's points, deviation [m]
   double side_points = 0.25;   ///< share of steps in height that get points on their side
   double outliers = 0.002;     ///< fraction of flying points
   double drift = 0.005;        ///< largest drift of the path over its length

@@ -85,6 +85,7 @@ class Sampler {
   Sampler(const Canvas& canvas, const UavOptions& options, std::uint64_t seed)
       : options_(&options),
         seed_(seed),
+        canvas_(&canvas),
         window_(&canvas.window),
         scene_(averageBlocks(canvas, options, seed)),
         colour_(options.colour, scene_.mean_light, seed),
@@ -121,6 +122,11 @@ class Sampler {
         local.y() > window_->height()) {
       return;
     }
+    if (!canvas_->isPresent(
+            std::min(static_cast<int>(local.y() / window_->cell), window_->rows - 1),
+            std::min(static_cast<int>(local.x() / window_->cell), window_->cols - 1))) {
+      return;
+    }
     const float hole = noiseAt(seed_ + 9, local.x() / 0.25, local.y() / 0.25) * 0.8F +
                        noiseAt(seed_ + 10, local.x() / 0.06, local.y() / 0.06) * 0.4F;
     if (hole > hole_) return;
@@ -145,6 +151,7 @@ class Sampler {
 
   const UavOptions* options_;
   std::uint64_t seed_;
+  const Canvas* canvas_;
   const Window* window_;
   Reconstruction scene_;
   ColourResponse colour_;

@@ -36,6 +36,7 @@ class StripSensor {
     fillCeiling();
     blurRaster(smooth_, options.smoothing / canvas.window.cell);
     fillCameraHeights();
+    fillPoseShifts();
   }
 
   int rows() const { return static_cast<int>(std::ceil(options_->width / options_->spacing)); }
@@ -102,7 +103,26 @@ class StripSensor {
     }
   }
 
+  /// Every camera position is a little off: its points shift together.
+  void fillPoseShifts() {
+    const auto poses =
+        static_cast<std::uint64_t>(canvas_->window.width() / static_cast<double>(kPoseDistance)) +
+        2;
+    const double sigma = options_->pose_noise;
+    for (std::uint64_t pose = 0; pose < poses; ++pose) {
+      Random random = Random::stream(seed_ ^ 0x905E, pose);
+      pose_shifts_.emplace_back(static_cast<float>(random.normal(sigma)),
+                                static_cast<float>(random.normal(sigma)),
+                                static_cast<float>(random.normal(0.7 * sigma)));
+    }
+  }
+  const Eigen::Vector3f& poseShift(float camera_x) const {
+    const auto pose = static_cast<std::size_t>(std::max(0.0F, camera_x / kPoseDistance));
+    return pose_shifts_[std::min(pose, pose_shifts_.size() - 1)];
+  }
+
   struct Ray {
+    float back = 0.0F;          ///< distance of the camera behind the surface, along the strip [m]
     Eigen::Vector3f direction;  ///< unit, from the surface to the camera
     float slope = 0.0F;         ///< rise per horizontal metre
   };
@@ -115,22 +135,22 @@ class StripSensor {
     const int c = std::clamp(static_cast<int>(camera_x / cell_), 0, canvas_->window.cols - 1);
     const Eigen::Vector3f to(-back, static_cast<float>(y_middle_) - y,
                              camera_z_[static_cast<std::size_t>(c)] - z);
-    return {to.normalized(), to.z() / to.head<2>().norm()};
+    return {back, to.normalized(), to.z() / to.head<2>().norm()};
   }
 
   bool hidden(float x, float y, float z, const Ray& ray) const {
     const float top = ceiling_[static_cast<std::size_t>(
         std::clamp(static_cast<int>(x / cell_), 0, canvas_->window.cols - 1) / kBlock)];
-    const float step = 1.5F;
+    constexpr float kStep = 2.0F;  // in cells
     const Eigen::Vector2f direction = ray.direction.head<2>().normalized();
-    const float rise = ray.slope * step * cell_;
+    const float rise = ray.slope * kStep * cell_;
     if (rise <= 0.0F) return true;  // the plant is taller than the camera
     float col = x / cell_ - 0.5F;
     float row = y / cell_ - 0.5F;
     float height = z + 0.004F;
     while (height < top) {
-      col += step * direction.x();
-      row += step * direction.y();
+      col += kStep * direction.x();
+      row += kStep * direction.y();
       height += rise;
       const int c = static_cast<int>(col + 0.5F);
       const int r = static_cast<int>(row + 0.5F);
@@ -156,6 +176,7 @@ class StripSensor {
     const auto y = static_cast<float>(y_middle_ + aside);
     const int col = std::clamp(static_cast<int>(x / cell_), 0, canvas_->window.cols - 1);
     const int row = std::clamp(static_cast<int>(y / cell_), 0, canvas_->window.rows - 1);
+    if (!canvas_->isPresent(row, col)) return;
     const float top = canvas_->cells(row, col).z;
     const int first = static_cast<int>(random.below(kCameras));
     Ray ray;
@@ -165,11 +186,12 @@ class StripSensor {
       seen = !hidden(x, y, top, ray);
     }
     if (!seen) return;
+    const Eigen::Vector3f& shift = poseShift(x - ray.back);
     float z = sampleRaster(smooth_, x / cell_ - 0.5F, y / cell_ - 0.5F);
     Eigen::Vector3f point(static_cast<float>(along), static_cast<float>(aside), z);
     // Depth errors lie along the ray; a wider spread at the strip's edges.
     const auto depth = static_cast<float>(random.normal(options_->noise * (1.0 + edge * edge)));
-    point += depth * ray.direction;
+    point += depth * ray.direction + shift;
     if (random.chance(options_->outliers)) {
       point += Eigen::Vector3f(static_cast<float>(random.normal(0.03)),
                                static_cast<float>(random.normal(0.03)),
@@ -203,6 +225,7 @@ class StripSensor {
   }
 
   static constexpr int kBlock = 32;
+  static constexpr float kPoseDistance = 0.25F;  // between camera positions [m]
   const Canvas* canvas_;
   const UgvOptions* options_;
   std::uint64_t seed_;
@@ -213,6 +236,7 @@ class StripSensor {
   Raster<float> smooth_;
   std::vector<float> ceiling_;
   std::vector<float> camera_z_;
+  std::vector<Eigen::Vector3f> pose_shifts_;
 };
 
 }  // namespace

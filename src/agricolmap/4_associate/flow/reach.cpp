@@ -20,10 +20,10 @@ Eigen::Matrix2d Reach::linear(double yaw, double scale_x, double scale_y) const 
 }
 
 Eigen::Matrix2d Reach::randomLinear(Random& random) const {
-  const double spread = space_.uncertainty.scale;
+  const double spread = logScaleLimit(space_.uncertainty);
   const double yaw = random.uniform(-yaw_, yaw_);
-  const double scale_x = random.uniform(1.0 - spread, 1.0 + spread);
-  const double scale_y = random.uniform(1.0 - spread, 1.0 + spread);
+  const double scale_x = std::exp(random.uniform(-spread, spread));
+  const double scale_y = std::exp(random.uniform(-spread, spread));
   return linear(yaw, scale_x, scale_y);
 }
 
@@ -49,12 +49,12 @@ Box2 Reach::boxOver(const Map& map) const {
   // The image is linear in the scales and nearly so in the yaw: corners and centre span it; wide
   // headings need the steps between.
   const int steps = std::max(2, static_cast<int>(std::ceil(2.0 * yaw_ / 0.2)));
-  const double spread = space_.uncertainty.scale;
+  const double widest = std::exp(logScaleLimit(space_.uncertainty));
   Box2 box;
   for (int i = 0; i <= steps; ++i) {
     const double yaw = -yaw_ + 2.0 * yaw_ * i / steps;
-    for (const double scale_x : {1.0 - spread, 1.0 + spread}) {
-      for (const double scale_y : {1.0 - spread, 1.0 + spread}) {
+    for (const double scale_x : {1.0 / widest, widest}) {
+      for (const double scale_y : {1.0 / widest, widest}) {
         box.extend(map(linear(yaw, scale_x, scale_y)));
       }
     }

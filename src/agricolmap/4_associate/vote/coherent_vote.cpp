@@ -67,9 +67,9 @@ std::vector<Hypothesis> hypotheses(const PriorUncertainty& u, const Eigen::Vecto
   std::vector<Hypothesis> result;
   const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0;
   for (const double yaw : lattice(yaw_limit, stepFor(half_extent.norm()))) {
-    for (const double x : lattice(u.scale, stepFor(half_extent.x()))) {
-      for (const double y : lattice(u.scale, stepFor(half_extent.y()))) {
-        result.push_back({yaw, Eigen::Vector2d(1.0 + x, 1.0 + y)});
+    for (const double x : lattice(logScaleLimit(u), stepFor(half_extent.x()))) {
+      for (const double y : lattice(logScaleLimit(u), stepFor(half_extent.y()))) {
+        result.push_back({yaw, Eigen::Vector2d(std::exp(x), std::exp(y))});
       }
     }
   }
@@ -188,7 +188,7 @@ double yawLimit(const PriorUncertainty& u) { return u.heading_deg * std::numbers
 /// True inside what the initial guess allows, with a little play for the fit.
 bool allowed(const ScaledRotation& pose, const PriorUncertainty& u) {
   return std::abs(pose.yaw) <= yawLimit(u) + 0.05 &&
-         (pose.scale.array() - 1.0).abs().maxCoeff() <= u.scale + 0.05;
+         pose.scale.array().log().abs().maxCoeff() <= logScaleLimit(u) + 0.05;
 }
 
 /// The best-supported placement of some matches; no inliers when nothing is supported.
@@ -199,9 +199,10 @@ VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& 
   const std::vector<Hypothesis> all = hypotheses(space.uncertainty, pairs.half_extent, bin);
   // The pivot moves by the translation plus what heading and scales do to its arm from the centre.
   const double arm = (pairs.pivot - space.centre).norm();
-  const double reach =
-      space.uncertainty.translation +
-      arm * (space.uncertainty.scale + std::min(2.0, yawLimit(space.uncertainty))) + bin;
+  const double reach = space.uncertainty.translation +
+                       arm * (std::expm1(logScaleLimit(space.uncertainty)) +
+                              std::min(2.0, yawLimit(space.uncertainty))) +
+                       bin;
   const Box2 window(Eigen::Vector2d::Constant(-reach), Eigen::Vector2d::Constant(reach));
   const ShiftVote vote(pairs, window, bin);
   std::vector<Peak> peaks(all.size());
