@@ -55,7 +55,7 @@ ExitCode run(int argc, char** argv) {
   const std::vector<CommandSlot> commands = {
       addRegisterCommand(app, globals), addSimulateCommand(app, globals),
       addEvaluateCommand(app, globals), addImportCommand(app, globals),
-      addInfoCommand(app, globals)};
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
