@@ -23,7 +23,7 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
   for (const Cloud* cloud : {&fixed, &moving}) {
     if (!cloud->hasColour()) {
       throw InputError(fmt::format(
-          "{}: has no colours; Excess Green needs them (use --geometry-only to register by height "
+          "{}: has no colours; Excess Green needs them (use --geometry_only to register by height "
           "alone)",
           cloud->name));
     }
