@@ -95,20 +95,22 @@ class Locator {
 Bands sortIntoBands(const Cloud& cloud, const GridFrame& frame, const Locator& locator) {
   const std::size_t bands = static_cast<std::size_t>((frame.rows + kBandRows - 1) / kBandRows);
   const std::size_t chunks = (cloud.size() + kChunk - 1) / kChunk;
-  // Count per chunk and band first; the prefix sums then give every chunk its own places.
+  // Every point is located once: two computations of the same cell need not round alike.
+  std::vector<std::vector<Located>> inside(chunks);
   std::vector<std::size_t> places(chunks * bands, 0);
-  const auto forPoints = [&](std::size_t chunk, auto&& visit) {
+  const auto bandOf = [](const Located& p) { return static_cast<std::size_t>(p.v) / kBandRows; };
+  parallelFor(chunks, [&](std::size_t chunk) {
     Located located{};
     const std::size_t end = std::min(cloud.size(), (chunk + 1) * kChunk);
+    inside[chunk].reserve(end - chunk * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
       if (!locator.locate(cloud.xyz[i], located)) continue;
       located.index = static_cast<std::uint32_t>(i);
-      visit(static_cast<std::size_t>(located.v) / kBandRows, located);
+      inside[chunk].push_back(located);
+      ++places[chunk * bands + bandOf(located)];
     }
-  };
-  parallelFor(chunks, [&](std::size_t chunk) {
-    forPoints(chunk, [&](std::size_t band, const Located&) { ++places[chunk * bands + band]; });
   });
+  // Prefix sums give every chunk its own places in every band.
   Bands result;
   result.begin.resize(bands + 1);
   std::size_t next = 0;
@@ -121,9 +123,10 @@ Bands sortIntoBands(const Cloud& cloud, const GridFrame& frame, const Locator& l
   result.begin[bands] = next;
   result.points.resize(next);
   parallelFor(chunks, [&](std::size_t chunk) {
-    forPoints(chunk, [&](std::size_t band, const Located& located) {
-      result.points[places[chunk * bands + band]++] = located;
-    });
+    for (const Located& p : inside[chunk]) {
+      result.points[places[chunk * bands + bandOf(p)]++] = p;
+    }
+    inside[chunk] = {};
   });
   return result;
 }

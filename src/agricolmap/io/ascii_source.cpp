@@ -92,9 +92,34 @@ void AsciiSource::fail(std::size_t point, std::string_view what) const {
   throw InputError(fmt::format("{}: point {}: {}", layout_.name, point + 1, what));
 }
 
-void AsciiSource::decodeLine(std::string_view line, std::size_t point, PointBlock& block) const {
+void AsciiSource::decodeColour(AsciiColumn::Use use, std::string_view word, std::size_t point,
+                               PointBlock& block) const {
   using Use = AsciiColumn::Use;
   const std::size_t i = block.count;
+  if (use == Use::kPacked) {
+    const auto bits = parsePacked(word);
+    if (!bits) {
+      fail(point, fmt::format("'{}' is no packed colour; write the cloud as binary", word));
+    }
+    block.rgb[i] = {static_cast<std::uint8_t>(*bits >> 16), static_cast<std::uint8_t>(*bits >> 8),
+                    static_cast<std::uint8_t>(*bits)};
+    return;
+  }
+  const std::size_t channel = static_cast<std::size_t>(use) - static_cast<std::size_t>(Use::kRed);
+  if (layout_.colour == ColourKind::kByte) {
+    const auto byte = parseByte(word);
+    if (!byte) fail(point, fmt::format("'{}' is no colour of 0..255", word));
+    Rgb& rgb = block.rgb[i];
+    (channel == 0 ? rgb.r : channel == 1 ? rgb.g : rgb.b) = *byte;
+    return;
+  }
+  const auto value = parseNumber(word);
+  if (!value) fail(point, fmt::format("'{}' is no number", word));
+  block.wide[channel][i] = static_cast<float>(*value);
+}
+
+void AsciiSource::decodeLine(std::string_view line, std::size_t point, PointBlock& block) const {
+  using Use = AsciiColumn::Use;
   for (const AsciiColumn& column : layout_.columns) {
     const std::string_view word = takeWord(line);
     if (word.empty()) fail(point, "has fewer values than the header says");
@@ -114,33 +139,15 @@ void AsciiSource::decodeLine(std::string_view line, std::size_t point, PointBloc
       case Use::kZ: {
         const auto value = parseNumber(word);
         if (!value) fail(point, fmt::format("'{}' is no number", word));
-        block.xyz[static_cast<std::size_t>(column.use) - static_cast<std::size_t>(Use::kX)][i] =
-            *value;
+        const auto axis = static_cast<std::size_t>(column.use) - static_cast<std::size_t>(Use::kX);
+        block.xyz[axis][block.count] = *value;
         break;
       }
-      case Use::kPacked: {
-        const auto bits = parsePacked(word);
-        if (!bits) {
-          fail(point, fmt::format("'{}' is no packed colour; write the cloud as binary", word));
-        }
-        block.rgb[i] = {static_cast<std::uint8_t>(*bits >> 16),
-                        static_cast<std::uint8_t>(*bits >> 8), static_cast<std::uint8_t>(*bits)};
-        break;
-      }
-      default: {
-        const auto channel =
-            static_cast<std::size_t>(column.use) - static_cast<std::size_t>(Use::kRed);
-        if (layout_.colour == ColourKind::kByte) {
-          const auto byte = parseByte(word);
-          if (!byte) fail(point, fmt::format("'{}' is no colour of 0..255", word));
-          Rgb& rgb = block.rgb[i];
-          (channel == 0 ? rgb.r : channel == 1 ? rgb.g : rgb.b) = *byte;
-        } else {
-          const auto value = parseNumber(word);
-          if (!value) fail(point, fmt::format("'{}' is no number", word));
-          block.wide[channel][i] = static_cast<float>(*value);
-        }
-      }
+      case Use::kRed:
+      case Use::kGreen:
+      case Use::kBlue:
+      case Use::kPacked:
+        decodeColour(column.use, word, point, block);
     }
   }
   if (!takeWord(line).empty()) fail(point, "has more values than the header says");

@@ -55,6 +55,8 @@ class AsciiSource : public PointSource {
     std::size_t first_point = 0;
   };
   void decodeLine(std::string_view line, std::size_t point, PointBlock& block) const;
+  void decodeColour(AsciiColumn::Use use, std::string_view word, std::size_t point,
+                    PointBlock& block) const;
   [[noreturn]] void fail(std::size_t point, std::string_view what) const;
 
   AsciiLayout layout_;

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 
 #include "agricolmap/core/error.hpp"
@@ -115,6 +116,18 @@ Rgb narrow(const PointBlock& block, std::size_t i, float scale) {
   return {byte(0), byte(1), byte(2)};
 }
 
+/// Large arrays are touched for the first time here; huge pages save most of the page faults.
+template <typename T>
+void resizeInHugePages(std::vector<T>& values, std::size_t size) {
+  constexpr std::size_t kHuge = 1U << 21;
+  values.reserve(size);
+  auto* const first = reinterpret_cast<std::byte*>(values.data());
+  const std::size_t skip = (kHuge - reinterpret_cast<std::uintptr_t>(first) % kHuge) % kHuge;
+  const std::size_t bytes = size * sizeof(T);
+  if (bytes > skip + kHuge) ::madvise(first + skip, (bytes - skip) / kHuge * kHuge, MADV_HUGEPAGE);
+  values.resize(size);
+}
+
 /// Closes the gaps that dropped points left at the ends of chunks.
 void compact(const PointSource& source, const std::vector<std::size_t>& kept, Cloud& cloud) {
   std::size_t next = 0;
@@ -144,8 +157,8 @@ Cloud assembleCloud(const PointSource& source, const std::string& name) {
   warnIfCoarse(source, cloud.origin, name);
   const ColourKind kind = source.colourKind();
   const float scale = isWide(kind) ? colourScale(source, name) : 1.0F;
-  cloud.xyz.resize(source.points());
-  if (kind != ColourKind::kNone) cloud.rgb.resize(source.points());
+  resizeInHugePages(cloud.xyz, source.points());
+  if (kind != ColourKind::kNone) resizeInHugePages(cloud.rgb, source.points());
   std::vector<std::size_t> kept(source.chunks(), 0);
   std::vector<float> farthest(source.chunks(), 0.0F);
   parallelFor(source.chunks(), [&](std::size_t chunk) {

@@ -36,6 +36,7 @@ std::string_view remedyFor(std::string_view text) {
     return "it is a TIFF raster; orthophoto and surface model can be imported";
   }
   if (text.starts_with("\x89PNG")) return "it is a PNG picture";
+  if (text.starts_with("ply\r")) return "its lines end in CR alone; convert it with mac2unix";
   return "known are PLY and PCD";
 }
 

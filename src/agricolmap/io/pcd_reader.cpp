@@ -255,7 +255,7 @@ BinaryColumns columnsOf(const Header& header, const Roles& roles, const std::byt
 }
 
 std::uint64_t checkedBytes(const Header& header, std::uint64_t available, const std::string& name) {
-  const std::size_t each = header.pointBytes();
+  const std::size_t each = std::max<std::size_t>(header.pointBytes(), 1);  // x, y, z at least
   if (header.points > available / each) {
     throw InputError(fmt::format(
         "{}: truncated: the header announces {} points of {} bytes, but only {} bytes follow ({} "

@@ -1,5 +1,10 @@
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <sstream>
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -82,6 +87,48 @@ TEST(PlyReader, KeepsUtmCoordinatesToAMicrometre) {
   EXPECT_NEAR(cloud.filePoint(0).y(), 5000000.123456789, 1e-8);  // float spacing at 0.12 m: 7e-9
   EXPECT_NEAR(cloud.filePoint(1).y(), 5000001.987654321, 1e-6);  // at 2 m: 1.2e-7
   EXPECT_TRUE(cloud.rgb.empty());
+}
+
+/// What is logged while it lives.
+class LogCapture {
+ public:
+  LogCapture() : before_(spdlog::default_logger()) {
+    const auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("capture", sink));
+  }
+  ~LogCapture() { spdlog::set_default_logger(before_); }
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+  bool contains(const std::string& part) const {
+    return text_.str().find(part) != std::string::npos;
+  }
+  bool empty() const { return text_.str().empty(); }
+
+ private:
+  std::ostringstream text_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+TEST(PlyReader, WarnsOfCoarseFloatsAndOutliers) {
+  const TempDir dir;
+  const auto file = [](float y) {
+    std::string content = header("binary_little_endian", "element vertex 2\n" + kXyzFloat);
+    for (const float v : {1.0F, y, 2.0F, 1.0F, y, 2.0F}) append(content, v);
+    return content;
+  };
+  {
+    const LogCapture log;
+    read(dir, file(5000000.0F));
+    EXPECT_TRUE(log.contains("in steps of 50.0 cm"));
+    EXPECT_TRUE(log.contains("double"));
+  }
+  {
+    const LogCapture log;
+    read(dir, file(99000.0F));
+    EXPECT_TRUE(log.empty());
+    read(dir, header("ascii", "element vertex 2\n" + kXyzFloat) + "0 0 0\n500000 5000000 0\n");
+    EXPECT_TRUE(log.contains("5000 km from the first one"));
+  }
 }
 
 TEST(PlyReader, ScalesWideColoursByTheFilesRange) {
@@ -193,6 +240,7 @@ TEST(PlyReader, CatchesLyingHeaders) {
   expectRefused("", {"empty"});
   expectRefused("hello", {"not a point cloud"});
   expectRefused("LASF", {"pdal"});
+  expectRefused("ply\rformat ascii 1.0\r", {"mac2unix"});
 }
 
 TEST(PlyReader, CatchesLyingData) {

@@ -97,7 +97,7 @@ void renameOrFail(const fs::path& from, const fs::path& to) {
 
 /// A name that stays inside its folder.
 fs::path checkedName(const std::string& name) {
-  const fs::path path = fs::path(name).lexically_normal();
+  fs::path path = fs::path(name).lexically_normal();
   if (path.empty() || path.is_absolute() || !path.has_filename() || *path.begin() == ".." ||
       path == ".") {
     throw UsageError(fmt::format("'{}' is no name of a file inside the output folder", name));

@@ -20,6 +20,7 @@ void describe(OptionTable& table, RegistrationOptions& options) {
   table.group("signal", options.signal);
   table.group("search", options.search);
   table.group("flow", options.flow);
+  table.group("affine", options.affine);
   table.group("dense", options.dense);
   table.group("cpd", options.cpd);
   table.group("vertical", options.vertical);

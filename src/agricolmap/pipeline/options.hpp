@@ -10,6 +10,7 @@
 #include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/4_associate/correlate/correlation_search.hpp"
 #include "agricolmap/4_associate/flow_association.hpp"
+#include "agricolmap/5_affine/estimate_affine.hpp"
 #include "agricolmap/6_refine/cpd.hpp"
 #include "agricolmap/6_refine/dense_refine.hpp"
 #include "agricolmap/6_refine/vertical.hpp"
@@ -31,6 +32,7 @@ struct RegistrationOptions {
   SignalOptions signal;
   CorrelationOptions search;
   FlowAssociationOptions flow;
+  AffineOptions affine;
   DenseRefineOptions dense;
   CpdOptions cpd;
   VerticalOptions vertical;

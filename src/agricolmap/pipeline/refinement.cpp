@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "agricolmap/4_associate/vote/scaled_rotation.hpp"
+#include "agricolmap/5_affine/estimate_affine.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
@@ -33,7 +33,8 @@ std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level,
   if (dense.status != RefineStatus::kConverged) return std::nullopt;
   RefinedPose refined = start;
   refined.pose = dense.fixed_from_moving;
-  refined.overlap = dense.overlap;
+  // Finer maps may be sparser than their cells: what overlaps is told at the ranking level.
+  if (level.factor >= kFactors[kRankingLevel]) refined.overlap = dense.overlap;
   refined.correlation = dense.correlation;
   return refined;
 }
@@ -44,8 +45,9 @@ std::optional<RefinedPose> PoseRefinement::choose(
   std::vector<std::optional<RefinedPose>> poses(placements.size());
   times.run("affine", [&] {
     for (std::size_t i = 0; i < placements.size(); ++i) {
-      const auto fit = fitScaledRotation(placements[i].matches, {}, space_.scale_axes);
-      if (fit) poses[i] = RefinedPose{fit->fixed_from_moving, 0.0, 0.0, 0.0};
+      const AffineEstimate fit =
+          estimateAffine(placements[i].matches, space_.scale_axes, options_.affine);
+      if (fit.ok()) poses[i] = RefinedPose{fit.fixed_from_moving, 0.0, 0.0, 0.0};
     }
   });
   return times.run("refine", [&]() -> std::optional<RefinedPose> {

@@ -7,6 +7,7 @@
 
 #include "agricolmap/4_associate/correlate/blocks.hpp"
 #include "agricolmap/4_associate/correlate/hypotheses.hpp"
+#include "agricolmap/4_associate/correlate/polish.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
@@ -14,10 +15,14 @@ namespace agricolmap {
 void describe(OptionTable& table, CorrelationOptions& options) {
   table.number("cell", options.cell, 0.01, 10.0, "m",
                "cell of the search, rounded to whole grid cells");
+  table.number("tolerance", options.tolerance, 0.05, 5.0, "cells",
+               "RMS displacement between neighbouring hypotheses of heading and scales");
   table.number("block", options.block, 0.2, 100.0, "m",
                "side of the blocks that the moving map is cut into");
   table.integer("max_blocks", options.max_blocks, 1, 1000, "",
                 "at most this many blocks, the most textured ones, take part");
+  table.integer("climbs", options.climbs, 1, 10000, "",
+                "placements of the lattice from which the score is climbed");
   table.integer("candidates", options.candidates, 1, 1000, "",
                 "placements that are handed on to be refined and compared");
   table.number("separation", options.separation, 0.0, 100.0, "m",
@@ -27,13 +32,6 @@ void describe(OptionTable& table, CorrelationOptions& options) {
 }
 
 namespace {
-
-/// A hypothesis with the shift that fits it best somewhere.
-struct Candidate {
-  Hypothesis hypothesis;
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< of the search space's centre [m]
-  double score = -std::numeric_limits<double>::infinity();
-};
 
 bool better(const Candidate& a, const Candidate& b) { return a.score > b.score; }
 
@@ -110,6 +108,7 @@ class CoarseTask {
       anchor[b] = {static_cast<int>(std::lround(at.y())), static_cast<int>(std::lround(at.x()))};
     }
     Candidate top;
+    top.score = -std::numeric_limits<double>::infinity();
     for (int dr = -window_.radius; dr <= window_.radius; ++dr) {
       const int reach = window_.reach(dr);
       sum.assign(static_cast<std::size_t>(2 * reach + 1), 0.0F);
@@ -141,15 +140,15 @@ class CoarseTask {
   const ShiftWindow& window_;
 };
 
-/// Index of the coarse hypothesis nearest to `fine`, distances weighed by the lattice's steps.
+/// Index of the coarse hypothesis that moves a block's points most nearly as `fine` does.
 std::size_t nearestCoarse(const Hypothesis& fine, const std::vector<Hypothesis>& coarse,
-                          const Eigen::Vector3d& weight) {
+                          const Eigen::Matrix3d& block_metric) {
   std::size_t best = 0;
   double best_distance = std::numeric_limits<double>::max();
+  const Eigen::Vector3d at = fine.vector();
   for (std::size_t i = 0; i < coarse.size(); ++i) {
-    const Eigen::Vector3d d(coarse[i].yaw - fine.yaw, std::log(coarse[i].scale_x / fine.scale_x),
-                            std::log(coarse[i].scale_y / fine.scale_y));
-    const double distance = d.cwiseProduct(weight).squaredNorm();
+    const Eigen::Vector3d d = coarse[i].vector() - at;
+    const double distance = d.dot(block_metric * d);
     if (distance < best_distance) {
       best_distance = distance;
       best = i;
@@ -161,30 +160,44 @@ std::size_t nearestCoarse(const Hypothesis& fine, const std::vector<Hypothesis>&
 /// Largest displacement between two candidates over the strip's corners [m].
 double cornerDistance(const Candidate& a, const Candidate& b, const StripFrame& strip,
                       const SearchSpace& space) {
-  const Eigen::Matrix2d difference =
-      linearOf(a.hypothesis, space.scale_axes) - linearOf(b.hypothesis, space.scale_axes);
+  const Eigen::Affine2d pose_a = poseOf(a, space);
+  const Eigen::Affine2d pose_b = poseOf(b, space);
   double worst = 0.0;
   for (const double u : {-1.0, 1.0}) {
     for (const double v : {-1.0, 1.0}) {
       const Eigen::Vector2d corner =
           strip.world({u * strip.half_extent.x(), v * strip.half_extent.y()});
-      worst = std::max(worst, (difference * (corner - space.centre) + a.shift - b.shift).norm());
+      worst = std::max(worst, (pose_a * corner - pose_b * corner).norm());
     }
   }
   return worst;
+}
+
+/// The best candidates of which no two are nearer than `separation`, best first.
+std::vector<Candidate> distinct(std::vector<Candidate> all, int most, double separation,
+                                const StripFrame& strip, const SearchSpace& space) {
+  std::stable_sort(all.begin(), all.end(), better);
+  std::vector<Candidate> kept;
+  for (const Candidate& candidate : all) {
+    if (static_cast<int>(kept.size()) >= most) break;
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& k) {
+      return cornerDistance(k, candidate, strip, space) < separation;
+    });
+    if (is_new) kept.push_back(candidate);
+  }
+  return kept;
 }
 
 Placement placementOf(const Candidate& candidate, const StripFrame& strip,
                       const SearchSpace& space) {
   Placement placement;
   placement.score = candidate.score;
-  const Eigen::Matrix2d linear = linearOf(candidate.hypothesis, space.scale_axes);
+  const Eigen::Affine2d pose = poseOf(candidate, space);
   for (const double u : {-1.0, 0.0, 1.0}) {
     for (const double v : {-1.0, 0.0, 1.0}) {
       const Eigen::Vector2d point =
           strip.world({u * strip.half_extent.x(), v * strip.half_extent.y()});
-      placement.matches.push_back(
-          {point, space.centre + candidate.shift + linear * (point - space.centre)});
+      placement.matches.push_back({point, pose * point});
     }
   }
   return placement;
@@ -216,16 +229,16 @@ AssociationResult CorrelationSearch::associate(const GridMap& fixed, const GridM
         texturedBlocks(cutBlocks(moving_signal, strip, options_.block), options_.max_blocks);
     const MatchedFilter filter(fixed_signal, options_.filter);
 
-    // Half-extents along the scale axes, of a block and of the whole strip.
-    const Eigen::Matrix2d turn = (space.scale_axes.transpose() * strip.axes).cwiseAbs();
-    const Eigen::Vector2d block_half =
-        turn * (0.5 * (blocks.front().high - blocks.front().low)).eval();
-    const Eigen::Vector2d strip_half = turn * strip.half_extent;
-    const auto coarse = coverSpace(space.uncertainty, block_half, 0.5 * cell);
-    const auto fine = coverSpace(space.uncertainty, strip_half, 0.5 * cell);
-    const Eigen::Vector3d weight(block_half.norm(), block_half.x(), block_half.y());
+    const Eigen::Vector2d block_half = 0.5 * (blocks.front().high - blocks.front().low);
+    const Eigen::Matrix3d block_metric =
+        displacementMetric(strip.axes, block_half, space.scale_axes);
+    const Eigen::Matrix3d strip_metric =
+        displacementMetric(strip.axes, strip.half_extent, space.scale_axes);
+    const double radius = options_.tolerance * cell;
+    const auto coarse = coverSpace(space.uncertainty, block_metric, radius);
+    const auto fine = coverSpace(space.uncertainty, strip_metric, radius);
     std::vector<std::vector<Hypothesis>> members(coarse.size());
-    for (const Hypothesis& h : fine) members[nearestCoarse(h, coarse, weight)].push_back(h);
+    for (const Hypothesis& h : fine) members[nearestCoarse(h, coarse, block_metric)].push_back(h);
 
     const ShiftWindow window(space.uncertainty.translation / cell);
     const CoarseTask task(moving_signal, filter, space, strip, blocks, window);
@@ -236,16 +249,13 @@ AssociationResult CorrelationSearch::associate(const GridMap& fixed, const GridM
 
     std::vector<Candidate> all;
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-    std::stable_sort(all.begin(), all.end(), better);
+    std::vector<Candidate> kept =
+        distinct(std::move(all), options_.climbs, options_.separation, strip, space);
+    const Polisher polisher(moving_signal, filter, space, strip_metric);
+    parallelFor(kept.size(), [&](std::size_t i) { kept[i] = polisher.improve(kept[i]); });
+    kept = distinct(std::move(kept), options_.candidates, options_.separation, strip, space);
     AssociationResult result;
-    std::vector<Candidate> kept;
-    for (const Candidate& candidate : all) {
-      if (static_cast<int>(kept.size()) >= options_.candidates) break;
-      const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& k) {
-        return cornerDistance(k, candidate, strip, space) < options_.separation;
-      });
-      if (!is_new) continue;
-      kept.push_back(candidate);
+    for (const Candidate& candidate : kept) {
       result.placements.push_back(placementOf(candidate, strip, space));
     }
     result.counts = {{"hypotheses", static_cast<double>(fine.size())},

@@ -10,11 +10,13 @@
 namespace agricolmap {
 
 struct CorrelationOptions {
-  double cell = 0.12;        ///< cell of the search, rounded to whole grid cells [m]
-  double block = 2.2;        ///< side of the blocks the moving map is cut into [m]
-  int max_blocks = 10;       ///< of the most textured ones
-  int candidates = 12;       ///< placements handed on
-  double separation = 0.35;  ///< placements whose corners differ by less are one [m]
+  double cell = 0.12;       ///< cell of the search, rounded to whole grid cells [m]
+  double tolerance = 0.5;   ///< RMS displacement that hypotheses may leave [cells]
+  double block = 2.2;       ///< side of the blocks the moving map is cut into [m]
+  int max_blocks = 10;      ///< of the most textured ones
+  int climbs = 64;          ///< placements of the lattice from which the score is climbed
+  int candidates = 8;       ///< placements handed on
+  double separation = 0.3;  ///< placements whose corners differ by less are one [m]
   SignalOptions signal;
   MatchedFilterOptions filter;
 };

@@ -1,5 +1,6 @@
 #include "agricolmap/4_associate/correlate/hypotheses.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,31 +8,114 @@
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap {
+namespace {
+
+/// Points just outside the limits are drawn in to them when they are this near, in radii.
+constexpr double kRim = 0.6;
+
+/// The lattice in the coordinates where the metric is the unit matrix, over the parameters that are
+/// free at all.
+class Lattice {
+ public:
+  Lattice(const Eigen::Vector3d& limits, const Eigen::Matrix3d& metric, double radius)
+      : limits_(limits), metric_(metric), radius_(radius) {
+    for (int i = 0; i < 3; ++i) {
+      if (limits[i] > 0.0) free_.push_back(i);
+    }
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    Eigen::MatrixXd reduced(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        reduced(i, j) =
+            metric(free_[static_cast<std::size_t>(i)], free_[static_cast<std::size_t>(j)]);
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced);
+    const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(1e-12).cwiseSqrt();
+    parameters_from_unit_ = eigen.eigenvectors() * roots.cwiseInverse().asDiagonal();
+    unit_from_parameters_ = roots.asDiagonal() * eigen.eigenvectors().transpose();
+    // Side of the cube for a covering radius of `radius` in three dimensions: a·√5/4 = radius.
+    side_ = radius * 4.0 / std::sqrt(5.0);
+  }
+
+  std::vector<Eigen::Vector3d> points() const {
+    std::vector<Eigen::Vector3d> found;
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    if (n == 0) return {Eigen::Vector3d::Zero()};
+    Eigen::VectorXd limit(n);
+    for (Eigen::Index i = 0; i < n; ++i) limit[i] = limits_[free_[static_cast<std::size_t>(i)]];
+    const Eigen::VectorXd reach = unit_from_parameters_.cwiseAbs() * limit;
+    const Eigen::VectorXi most =
+        (reach / side_).unaryExpr([](double v) { return std::ceil(v) + 1.0; }).cast<int>();
+    for (const double offset : {0.0, 0.5}) {
+      Eigen::VectorXi index = -most;
+      while (true) {
+        add((index.cast<double>().array() + offset).matrix() * side_, limit, found);
+        Eigen::Index axis = 0;
+        while (axis < n && ++index[axis] > most[axis]) index[axis] = -most[axis], ++axis;
+        if (axis == n) break;
+      }
+    }
+    return found;
+  }
+
+ private:
+  void add(const Eigen::VectorXd& unit, const Eigen::VectorXd& limit,
+           std::vector<Eigen::Vector3d>& found) const {
+    const Eigen::VectorXd parameters = parameters_from_unit_ * unit;
+    const Eigen::VectorXd inside = parameters.cwiseMax(-limit).cwiseMin(limit);
+    if ((unit_from_parameters_ * (parameters - inside)).norm() > kRim * radius_) return;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      point[free_[i]] = inside[static_cast<Eigen::Index>(i)];
+    }
+    found.push_back(point);
+  }
+
+  Eigen::Vector3d limits_;
+  Eigen::Matrix3d metric_;
+  double radius_;
+  double side_ = 0.0;
+  std::vector<int> free_;
+  Eigen::MatrixXd parameters_from_unit_;
+  Eigen::MatrixXd unit_from_parameters_;
+};
+
+}  // namespace
+
+Eigen::Vector3d Hypothesis::vector() const { return {yaw, std::log(scale_x), std::log(scale_y)}; }
 
 Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& scale_axes) {
   const Eigen::Vector2d scales(hypothesis.scale_x, hypothesis.scale_y);
   return rotation2(hypothesis.yaw) * scale_axes * scales.asDiagonal() * scale_axes.transpose();
 }
 
-std::vector<double> coverInterval(double limit, double step) {
-  const int count = std::max(1, static_cast<int>(std::ceil(2.0 * limit / step)));
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) values.push_back(limit * ((2.0 * i + 1.0) / count - 1.0));
-  return values;
+Eigen::Matrix3d displacementMetric(const Eigen::Matrix2d& axes, const Eigen::Vector2d& half_extent,
+                                   const Eigen::Matrix2d& scale_axes) {
+  // Displacement of p: yaw·Jp + a·e₁e₁ᵀp + b·e₂e₂ᵀp; the mean of ppᵀ over the rectangle is known.
+  const Eigen::Matrix2d spread =
+      axes * half_extent.cwiseAbs2().asDiagonal() * axes.transpose() / 3.0;
+  Eigen::Matrix2d generator[3];
+  generator[0] << 0.0, -1.0, 1.0, 0.0;
+  generator[1] = scale_axes.col(0) * scale_axes.col(0).transpose();
+  generator[2] = scale_axes.col(1) * scale_axes.col(1).transpose();
+  Eigen::Matrix3d metric;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      metric(i, j) = (generator[i] * spread * generator[j].transpose()).trace();
+    }
+  }
+  return metric;
 }
 
 std::vector<Hypothesis> coverSpace(const PriorUncertainty& uncertainty,
-                                   const Eigen::Vector2d& half_extent, double tolerance) {
-  const double yaw_limit = uncertainty.heading_deg * std::numbers::pi / 180.0;
+                                   const Eigen::Matrix3d& metric, double radius) {
   const double scale_limit = logScaleLimit(uncertainty);
-  const double step = 2.0 * tolerance;
+  const Eigen::Vector3d limits(uncertainty.heading_deg * std::numbers::pi / 180.0, scale_limit,
+                               scale_limit);
   std::vector<Hypothesis> hypotheses;
-  for (const double yaw : coverInterval(yaw_limit, step / half_extent.norm())) {
-    for (const double x : coverInterval(scale_limit, step / half_extent.x())) {
-      for (const double y : coverInterval(scale_limit, step / half_extent.y())) {
-        hypotheses.push_back({yaw, std::exp(x), std::exp(y)});
-      }
-    }
+  for (const Eigen::Vector3d& p : Lattice(limits, metric, radius).points()) {
+    hypotheses.push_back({p[0], std::exp(p[1]), std::exp(p[2])});
   }
   return hypotheses;
 }

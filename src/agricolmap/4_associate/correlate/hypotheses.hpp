@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/4_associate/correlate/blocks.hpp"
 
 namespace agricolmap {
 
@@ -13,17 +14,23 @@ struct Hypothesis {
   double yaw = 0.0;  ///< [rad]
   double scale_x = 1.0;
   double scale_y = 1.0;
+  /// (yaw, log scale_x, log scale_y): differences of these move points linearly.
+  Eigen::Vector3d vector() const;
 };
 
 /// Linear map R(yaw) · A · diag(s_x, s_y) · Aᵀ with A the directions of the scales.
 Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& scale_axes);
 
-/// Evenly spaced values that cover [−limit, limit] with no point further than step/2 from one.
-std::vector<double> coverInterval(double limit, double step);
+/// Mean squared displacement of the points of a rectangle about its middle, as a quadratic form in
+/// a small change of (yaw, log s_x, log s_y) [m²]. `axes`, `half_extent`: of the rectangle.
+Eigen::Matrix3d displacementMetric(const Eigen::Matrix2d& axes, const Eigen::Vector2d& half_extent,
+                                   const Eigen::Matrix2d& scale_axes);
 
-/// All combinations such that a point `half_extent` from the centre (per scale axis; their norm for
-/// the heading) is nowhere off by more than `tolerance` per parameter [m].
+/// Hypotheses within the uncertainty's limits, the initial guess itself among them, such that any
+/// other is within an RMS displacement of about `radius` [m] of one under `metric`. A body-centred
+/// cubic lattice in the metric's own coordinates: the thinnest covering there is in three
+/// dimensions, and it does not grow when the strip lies obliquely to the scale axes.
 std::vector<Hypothesis> coverSpace(const PriorUncertainty& uncertainty,
-                                   const Eigen::Vector2d& half_extent, double tolerance);
+                                   const Eigen::Matrix3d& metric, double radius);
 
 }  // namespace agricolmap

@@ -44,12 +44,20 @@ class MatchedFilter {
   const Fft2& fft() const { return fft_; }
   const GridFrame& frame() const { return frame_; }
   const MatchedFilterOptions& options() const { return options_; }
+  /// The whitened map itself, channel by channel; cells beyond the frame pad it for the FFT.
+  const Raster<float>& whitenedGreenness() const { return greenness_; }
+  const Raster<float>& whitenedHeight() const { return height_; }
+  /// RMS of both channels over the map.
+  double whitenedDeviation() const { return deviation_; }
 
  private:
   GridFrame frame_;
   MatchedFilterOptions options_;
   Fft2 fft_;
-  ComplexRaster whitened_;  ///< spectrum of the whitened map, conjugated use
+  ComplexRaster whitened_;  ///< spectrum of the whitened map, greenness + i · height
+  Raster<float> greenness_;
+  Raster<float> height_;
+  double deviation_ = 0.0;
 };
 
 // Implementation of the template.

@@ -60,9 +60,10 @@ class Matcher {
   }
 
   FlowField run(const CostOptions& cost_options) {
-    for (int level = options_.levels - 1; level >= 0; --level) {
+    const int coarsest_level = static_cast<int>(std::min(fixed_.size(), moving_.size())) - 1;
+    for (int level = coarsest_level; level >= 0; --level) {
       const auto l = static_cast<std::size_t>(level);
-      const bool coarsest = level == options_.levels - 1;
+      const bool coarsest = level == coarsest_level;
       enter(l, cost_options);
       if (coarsest) start();
       for (int it = 0; it < options_.iterations; ++it) {

@@ -43,10 +43,10 @@ SeedLattice latticeOn(const DescriptorMap& moving, int seed_spacing);
 /// Which map the seeds lie in.
 enum class Direction { kForward, kBackward };
 
-/// Matches seeds of the moving map to the fixed one (forward) or the reverse. Per level: candidates
-/// from neighbours in the lattice at strides 8, 4, 2, 1 and random search with shrinking radius. An
-/// iteration reads only the field of the one before and every seed has its own random stream, so
-/// the result depends on `seed` alone.
+/// Matches seeds of the moving map to the fixed one (forward) or the reverse, through all levels
+/// that both pyramids have. Per level: candidates from neighbours in the lattice at strides 8, 4,
+/// 2, 1 and random search with shrinking radius. An iteration reads only the field of the one
+/// before and every seed has its own random stream, so the result depends on `seed` alone.
 FlowField matchSeeds(const Pyramid& fixed, const Pyramid& moving, const SeedLattice& seeds,
                      const Reach& reach, Direction direction, const CostOptions& cost,
                      const FlowOptions& options, std::uint64_t seed);

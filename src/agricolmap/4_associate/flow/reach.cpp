@@ -8,8 +8,11 @@
 
 namespace agricolmap {
 
-Reach::Reach(const SearchSpace& space)
-    : space_(space), yaw_(space.uncertainty.heading_deg * std::numbers::pi / 180.0) {}
+Reach::Reach(const SearchSpace& space, const Eigen::Affine2d& warp)
+    : space_(space),
+      warp_(warp),
+      unwarp_(warp.inverse()),
+      yaw_(space.uncertainty.heading_deg * std::numbers::pi / 180.0) {}
 
 Eigen::Matrix2d Reach::linear(double yaw, double scale_x, double scale_y) const {
   return rotation2(yaw) * space_.scale_axes * Eigen::Vector2d(scale_x, scale_y).asDiagonal() *
@@ -17,10 +20,10 @@ Eigen::Matrix2d Reach::linear(double yaw, double scale_x, double scale_y) const 
 }
 
 Eigen::Matrix2d Reach::randomLinear(Random& random) const {
-  const double spread = space_.uncertainty.scale;
+  const double spread = logScaleLimit(space_.uncertainty);
   const double yaw = random.uniform(-yaw_, yaw_);
-  const double scale_x = random.uniform(1.0 - spread, 1.0 + spread);
-  const double scale_y = random.uniform(1.0 - spread, 1.0 + spread);
+  const double scale_x = std::exp(random.uniform(-spread, spread));
+  const double scale_y = std::exp(random.uniform(-spread, spread));
   return linear(yaw, scale_x, scale_y);
 }
 
@@ -32,13 +35,13 @@ Eigen::Vector2d Reach::randomShift(Random& random) const {
 
 Eigen::Vector2d Reach::sampleForward(const Eigen::Vector2d& q, Random& random) const {
   const Eigen::Matrix2d m = randomLinear(random);
-  return space_.centre + randomShift(random) + m * (q - space_.centre);
+  return space_.centre + randomShift(random) + m * (unwarp_ * q - space_.centre);
 }
 
 Eigen::Vector2d Reach::sampleBackward(const Eigen::Vector2d& p, Random& random) const {
   const Eigen::Matrix2d m = randomLinear(random);
   const Eigen::Vector2d arm = p - space_.centre - randomShift(random);
-  return space_.centre + m.inverse() * arm;
+  return warp_ * (space_.centre + m.inverse() * arm);
 }
 
 template <typename Map>
@@ -46,12 +49,12 @@ Box2 Reach::boxOver(const Map& map) const {
   // The image is linear in the scales and nearly so in the yaw: corners and centre span it; wide
   // headings need the steps between.
   const int steps = std::max(2, static_cast<int>(std::ceil(2.0 * yaw_ / 0.2)));
-  const double spread = space_.uncertainty.scale;
+  const double widest = std::exp(logScaleLimit(space_.uncertainty));
   Box2 box;
   for (int i = 0; i <= steps; ++i) {
     const double yaw = -yaw_ + 2.0 * yaw_ * i / steps;
-    for (const double scale_x : {1.0 - spread, 1.0 + spread}) {
-      for (const double scale_y : {1.0 - spread, 1.0 + spread}) {
+    for (const double scale_x : {1.0 / widest, widest}) {
+      for (const double scale_y : {1.0 / widest, widest}) {
         box.extend(map(linear(yaw, scale_x, scale_y)));
       }
     }
@@ -61,7 +64,7 @@ Box2 Reach::boxOver(const Map& map) const {
 
 Box2 Reach::forwardBox(const Eigen::Vector2d& q) const {
   Box2 box = boxOver([&](const Eigen::Matrix2d& m) -> Eigen::Vector2d {
-    return space_.centre + m * (q - space_.centre);
+    return space_.centre + m * (unwarp_ * q - space_.centre);
   });
   box.min().array() -= space_.uncertainty.translation;
   box.max().array() += space_.uncertainty.translation;
@@ -74,7 +77,7 @@ Box2 Reach::backwardBox(const Eigen::Vector2d& p) const {
   for (const double x : {-shift, shift}) {
     for (const double y : {-shift, shift}) {
       box.extend(boxOver([&](const Eigen::Matrix2d& m) -> Eigen::Vector2d {
-        return space_.centre + m.inverse() * (p - space_.centre - Eigen::Vector2d(x, y));
+        return warp_ * (space_.centre + m.inverse() * (p - space_.centre - Eigen::Vector2d(x, y)));
       }));
     }
   }

@@ -1,6 +1,8 @@
 // Where the initial guess allows a point to move.
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/core/random.hpp"
 
@@ -8,9 +10,11 @@ namespace agricolmap {
 
 /// The maps p = c + t + M·(q − c), M = R(yaw)·A·diag(s)·Aᵀ, that PriorUncertainty allows: c the
 /// centre, A the scale axes, |t| ≤ translation. Displacements therefore spread with the lever arm.
+/// Where the moving map was warped before it is matched, its points q' = warp·q stand for q.
 class Reach {
  public:
-  explicit Reach(const SearchSpace& space);
+  explicit Reach(const SearchSpace& space,
+                 const Eigen::Affine2d& warp = Eigen::Affine2d::Identity());
 
   /// Fixed point of moving point `q` under a random allowed map.
   Eigen::Vector2d sampleForward(const Eigen::Vector2d& q, Random& random) const;
@@ -29,6 +33,8 @@ class Reach {
   Box2 boxOver(const Map& map) const;
 
   SearchSpace space_;
+  Eigen::Affine2d warp_;
+  Eigen::Affine2d unwarp_;
   double yaw_;
 };
 

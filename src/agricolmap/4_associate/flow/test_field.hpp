@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -19,7 +20,10 @@ struct TestField {
   double gaps = 0.12;           ///< share of missing plants
   double noise = 0.03;          ///< of ExG in a view
   double height_noise = 0.004;  ///< [m]
-  std::uint64_t seed = 1;
+  double other_leaves =
+      0.0;                 ///< share of leaves that a view with its own `leaf_seed` sees elsewhere
+  std::uint64_t seed = 1;  ///< of the plants
+  std::uint64_t leaf_seed = 1;  ///< of the leaves not shared
 };
 
 /// Truth at 1 cm: greenness (0–1) and height [m].
@@ -54,14 +58,19 @@ inline Truth growField(const TestField& field) {
   const int n = static_cast<int>(field.size / Truth::kCell);
   Truth truth{Raster<float>(n, n), Raster<float>(n, n)};
   Random random(field.seed);
+  Random own = Random::stream(field.leaf_seed, 1);
   for (double y = 0.5 * field.rows; y < field.size; y += field.rows) {
     for (double x = 0.0; x < field.size; x += field.plants) {
       if (random.chance(field.gaps)) continue;
       const Eigen::Vector2d plant(x + random.normal(0.25 * field.plants), y + random.normal(0.02));
       const double vigour = random.uniform(0.6, 1.2);
       for (int leaf = 0; leaf < 5; ++leaf) {
-        const double angle = random.uniform(0.0, 6.2831853);
-        const double arm = vigour * random.uniform(0.0, 0.06);
+        double angle = random.uniform(0.0, 6.2831853);
+        double arm = vigour * random.uniform(0.0, 0.06);
+        if (own.chance(field.other_leaves)) {
+          angle = own.uniform(0.0, 6.2831853);
+          arm = vigour * own.uniform(0.0, 0.06);
+        }
         addLeaf(truth, plant + arm * Eigen::Vector2d(std::cos(angle), std::sin(angle)),
                 vigour * field.leaf, 0.08 * vigour);
       }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/transform.hpp"
@@ -22,7 +23,7 @@ void describe(OptionTable& table, VoteOptions& options) {
 
 namespace {
 
-constexpr std::size_t kCandidates = 32;  ///< bins drawn in to placements
+constexpr std::size_t kCandidates = 12;  ///< bins drawn in to placements
 constexpr int kDrawSteps = 12;
 constexpr double kWidestBins = 2048.0;  ///< per axis, a guard against absurd searches
 
@@ -66,9 +67,9 @@ std::vector<Hypothesis> hypotheses(const PriorUncertainty& u, const Eigen::Vecto
   std::vector<Hypothesis> result;
   const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0;
   for (const double yaw : lattice(yaw_limit, stepFor(half_extent.norm()))) {
-    for (const double x : lattice(u.scale, stepFor(half_extent.x()))) {
-      for (const double y : lattice(u.scale, stepFor(half_extent.y()))) {
-        result.push_back({yaw, Eigen::Vector2d(1.0 + x, 1.0 + y)});
+    for (const double x : lattice(logScaleLimit(u), stepFor(half_extent.x()))) {
+      for (const double y : lattice(logScaleLimit(u), stepFor(half_extent.y()))) {
+        result.push_back({yaw, Eigen::Vector2d(std::exp(x), std::exp(y))});
       }
     }
   }
@@ -182,58 +183,26 @@ VotedPlacement drawIn(std::span<const Match> matches, const Eigen::Affine2d& sta
   return placement;
 }
 
+double yawLimit(const PriorUncertainty& u) { return u.heading_deg * std::numbers::pi / 180.0; }
+
 /// True inside what the initial guess allows, with a little play for the fit.
 bool allowed(const ScaledRotation& pose, const PriorUncertainty& u) {
-  const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0 + 0.05;
-  return std::abs(pose.yaw) <= yaw_limit &&
-         (pose.scale.array() - 1.0).abs().maxCoeff() <= u.scale + 0.05;
+  return std::abs(pose.yaw) <= yawLimit(u) + 0.05 &&
+         pose.scale.array().log().abs().maxCoeff() <= logScaleLimit(u) + 0.05;
 }
 
-/// Best placements, each mostly of matches that no better one explains: between two real ones, maps
-/// that take a part of each also find support.
-std::vector<VotedPlacement> distinct(std::vector<VotedPlacement> drawn, std::size_t matches,
-                                     const PriorUncertainty& uncertainty,
-                                     const VoteOptions& options) {
-  std::stable_sort(drawn.begin(), drawn.end(),
-                   [](const VotedPlacement& a, const VotedPlacement& b) {
-                     return a.inliers.size() > b.inliers.size();
-                   });
-  std::vector<VotedPlacement> result;
-  std::vector<bool> taken(matches, false);
-  for (VotedPlacement& placement : drawn) {
-    if (result.size() == static_cast<std::size_t>(options.placements)) break;
-    if (!allowed(placement.pose, uncertainty)) continue;
-    const auto own = static_cast<std::size_t>(
-        std::count_if(placement.inliers.begin(), placement.inliers.end(),
-                      [&](std::uint32_t i) { return !taken[i]; }));
-    if (own < static_cast<std::size_t>(options.least) || 2 * own < placement.inliers.size()) {
-      continue;
-    }
-    for (const std::uint32_t i : placement.inliers) taken[i] = true;
-    result.push_back(std::move(placement));
-  }
-  return result;
-}
-
-}  // namespace
-
-std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
-                                         double cell, const VoteOptions& options) {
-  checkOptions(options);
-  if (matches.size() < static_cast<std::size_t>(options.least)) return {};
-  const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
-  const double unit = options.step * cell;
+/// The best-supported placement of some matches; no inliers when nothing is supported.
+VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& space,
+                             const Eigen::Matrix2d& axes, double unit, const VoteOptions& options) {
   const double bin = options.coarse * unit;
   const Pairs pairs = pairsOf(matches, axes);
   const std::vector<Hypothesis> all = hypotheses(space.uncertainty, pairs.half_extent, bin);
-
   // The pivot moves by the translation plus what heading and scales do to its arm from the centre.
   const double arm = (pairs.pivot - space.centre).norm();
-  const double reach =
-      space.uncertainty.translation +
-      arm * (space.uncertainty.scale +
-             std::min(2.0, space.uncertainty.heading_deg * std::numbers::pi / 180.0)) +
-      bin;
+  const double reach = space.uncertainty.translation +
+                       arm * (std::expm1(logScaleLimit(space.uncertainty)) +
+                              std::min(2.0, yawLimit(space.uncertainty))) +
+                       bin;
   const Box2 window(Eigen::Vector2d::Constant(-reach), Eigen::Vector2d::Constant(reach));
   const ShiftVote vote(pairs, window, bin);
   std::vector<Peak> peaks(all.size());
@@ -248,7 +217,6 @@ std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const S
   std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) {
     return a.votes != b.votes ? a.votes > b.votes : a.hypothesis < b.hypothesis;
   });
-
   std::vector<Eigen::Affine2d> starts;
   for (const Peak& peak : peaks) {
     if (starts.size() == kCandidates || peak.votes < options.least) break;
@@ -264,7 +232,51 @@ std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const S
   parallelFor(starts.size(), [&](std::size_t i) {
     drawn[i] = drawIn(matches, starts[i], axes, 2.0 * bin, options.tolerance * unit);
   });
-  return distinct(std::move(drawn), matches.size(), space.uncertainty, options);
+  VotedPlacement best;
+  for (VotedPlacement& placement : drawn) {
+    if (placement.inliers.size() > best.inliers.size() &&
+        allowed(placement.pose, space.uncertainty)) {
+      best = std::move(placement);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
+                                         double cell, const VoteOptions& options) {
+  checkOptions(options);
+  const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
+  // The next placement is sought among the matches that those before leave unexplained.
+  std::vector<Match> left(matches.begin(), matches.end());
+  std::vector<std::uint32_t> index(matches.size());
+  std::iota(index.begin(), index.end(), 0U);
+  std::vector<VotedPlacement> result;
+  const auto least = static_cast<std::size_t>(options.least);
+  while (result.size() < static_cast<std::size_t>(options.placements) && left.size() >= least) {
+    VotedPlacement placement = bestPlacement(left, space, axes, options.step * cell, options);
+    if (placement.inliers.size() < least) break;
+    std::vector<bool> taken(left.size(), false);
+    for (std::uint32_t& i : placement.inliers) {
+      taken[i] = true;
+      i = index[i];
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      if (taken[i]) continue;
+      left[kept] = left[i];
+      index[kept++] = index[i];
+    }
+    left.resize(kept);
+    index.resize(kept);
+    result.push_back(std::move(placement));
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const VotedPlacement& a, const VotedPlacement& b) {
+                     return a.inliers.size() > b.inliers.size();
+                   });
+  return result;
 }
 
 }  // namespace agricolmap

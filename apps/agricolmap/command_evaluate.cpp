@@ -1,0 +1,99 @@
+// agricolmap evaluate TRANSFORM MOVING --truth TRUTH
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "agricolmap/evaluate/metrics.hpp"
+#include "agricolmap/io/cloud_reader.hpp"
+#include "agricolmap/io/file_sink.hpp"
+#include "agricolmap/io/matrix_file.hpp"
+#include "agricolmap/io/staged_output.hpp"
+#include "common.hpp"
+
+namespace agricolmap {
+namespace {
+
+struct EvaluateArguments {
+  std::string transform;
+  std::string moving;
+  std::string truth;
+  std::string truth_points;
+  std::string output;
+};
+
+Truth readTruth(const EvaluateArguments& arguments, const Cloud& moving) {
+  Truth truth;
+  if (!arguments.truth_points.empty()) {
+    const Cloud points = readCloud(arguments.truth_points, {.colours = false});
+    if (points.size() != moving.size()) {
+      throw InputError(
+          fmt::format("{}: has {} points, {} has {}; the truth needs one per moving "
+                      "point, in the same order",
+                      arguments.truth_points, points.size(), arguments.moving, moving.size()));
+    }
+    truth.points.reserve(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) truth.points.push_back(points.filePoint(i));
+    truth.best_affine = bestAffine(moving, truth.points);
+  } else {
+    truth.best_affine = readTransform(arguments.truth);
+  }
+  return truth;
+}
+
+nlohmann::ordered_json toJson(const RegistrationErrors& errors) {
+  return {{"success", errors.within({})},
+          {"rms_m", errors.rms},
+          {"rms_horizontal_m", errors.rms_horizontal},
+          {"rms_vertical_m", errors.rms_vertical},
+          {"rms_to_best_affine_m", errors.rms_to_best_affine},
+          {"worst_m", errors.worst},
+          {"e_t_m", errors.translation},
+          {"e_r_rad", errors.rotation},
+          {"e_s", errors.scale}};
+}
+
+ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals) {
+  if (arguments.truth.empty() == arguments.truth_points.empty()) {
+    throw UsageError("evaluate needs either --truth or --truth-points");
+  }
+  const Eigen::Affine3d estimate = readMatrix(arguments.transform);
+  const Cloud moving = readCloud(arguments.moving, {.colours = false});
+  const RegistrationErrors errors =
+      evaluateTransform(estimate, readTruth(arguments, moving), moving);
+  if (!arguments.output.empty()) {
+    StagedFile output(arguments.output, globals.overwrite);
+    writeText(output.path(), toJson(errors).dump(2) + "\n");
+    output.commit();
+  }
+  if (globals.quiet) return ExitCode::kOk;
+  fmt::print("RMS displacement   {:.4f} m ({:.4f} horizontal, {:.4f} vertical)\n", errors.rms,
+             errors.rms_horizontal, errors.rms_vertical);
+  fmt::print("to the best affine {:.4f} m horizontal\n", errors.rms_to_best_affine);
+  fmt::print("largest            {:.4f} m\n", errors.worst);
+  fmt::print("e_t, e_r, e_s      {:.4f} m, {:.3f} deg, {:.2f} %\n", errors.translation,
+             errors.rotation * 180.0 / std::numbers::pi, 100.0 * errors.scale);
+  fmt::print("within limits      {} (RMS and e_t 0.05 m, e_r 0.1 rad, e_s 2.5 %)\n",
+             errors.within({}) ? "yes" : "no");
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals) {
+  auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = app.add_subcommand("evaluate", "Compare a transformation with the truth");
+  command
+      ->add_option("TRANSFORM", arguments->transform, "4x4 text, moving -> fixed file coordinates")
+      ->required();
+  command->add_option("MOVING", arguments->moving, "The moving cloud")->required();
+  command->add_option("--truth", arguments->truth,
+                      "True transform: 4x4 text, or 12 + 2 numbers as published with the paper");
+  command->add_option("--truth-points", arguments->truth_points,
+                      "Cloud with the true place of every moving point, in fixed file coordinates");
+  command->add_option("-o,--output", arguments->output, "JSON file for the errors");
+  return {command, [arguments, &globals] { return runEvaluate(*arguments, globals); }};
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,179 @@
+// agricolmap register FIXED MOVING -o DIR
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+#include <memory>
+#include <numbers>
+
+#include "agricolmap/config/json.hpp"
+#include "agricolmap/config/yaml.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/io/cloud_reader.hpp"
+#include "agricolmap/io/cloud_writer.hpp"
+#include "agricolmap/io/file_sink.hpp"
+#include "agricolmap/io/matrix_file.hpp"
+#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/report/pictures.hpp"
+#include "agricolmap/report/registration_json.hpp"
+#include "common.hpp"
+#include "option_flags.hpp"
+
+namespace agricolmap {
+namespace {
+
+struct RegisterArguments {
+  std::string fixed;
+  std::string moving;
+  std::string output;
+  std::string prior;
+  std::string config;
+  std::string preset = "default";
+  bool dump_config = false;
+  bool keep_rejected = false;
+  bool no_pictures = false;
+  OptionFlags flags;
+};
+
+/// Defaults, then the preset, then the configuration file, then flags.
+RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Globals& globals) {
+  RegistrationOptions options = preset(arguments.preset);
+  options.flow.seed = globals.seed;
+  options.affine.seed = globals.seed;
+  OptionTable table = optionTable(options);
+  if (!arguments.config.empty()) loadYaml(arguments.config, table);
+  arguments.flags.apply(table);
+  return options;
+}
+
+struct LoadedPair {
+  Cloud fixed;
+  Cloud moving;
+};
+
+LoadedPair load(const RegisterArguments& arguments) {
+  LoadedPair pair;
+  // Two files, two cores: the disk cache feeds both.
+  parallelFor(2, [&](std::size_t i) {
+    (i == 0 ? pair.fixed : pair.moving) = readCloud(i == 0 ? arguments.fixed : arguments.moving);
+  });
+  return pair;
+}
+
+void printSummary(const Registration& result, const std::string& directory) {
+  fmt::print("{}\n", toString(result.verdict.status));
+  for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
+  if (result.has_transform) {
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    fmt::print(
+        "relative to the initial guess: shift {:.3f} {:.3f} {:.3f} m, heading {:.3f} deg, scales "
+        "{:.4f} {:.4f}\n",
+        result.shift.x(), result.shift.y(), result.shift.z(), result.parts.yaw * kDegrees,
+        result.parts.scale_x, result.parts.scale_y);
+  }
+  fmt::print("results in {}\n", directory);
+}
+
+void warnOfDropped(const Cloud& cloud) {
+  if (cloud.dropped_points == 0) return;
+  spdlog::warn("{}: {} points with NaN, infinite or absurd coordinates were left out", cloud.name,
+               cloud.dropped_points);
+}
+
+RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
+                                  const LoadedPair& pair, const OptionTable& table) {
+  RegistrationReportInfo info;
+  info.version = AGRICOLMAP_VERSION;
+  info.seed = static_cast<std::uint64_t>(globals.seed);
+  info.threads = globals.threads;
+  info.command_line = globals.command_line;
+  info.fixed = cloudReport(pair.fixed, arguments.fixed);
+  info.moving = cloudReport(pair.moving, arguments.moving);
+  info.options = toJson(table);
+  return info;
+}
+
+/// Fills `output` with everything but the report.
+std::vector<std::string> writeResults(const RegisterArguments& arguments,
+                                      const RegistrationOptions& options, const LoadedPair& pair,
+                                      const Registration& result, const StagedOutput& output,
+                                      StageTimes& times) {
+  const bool keep = result.has_transform &&
+                    (result.verdict.status == Status::kAccepted || arguments.keep_rejected);
+  if (keep) {
+    times.run("write", [&] {
+      writeMatrix(output.path("transform.txt"), result.fixed_from_moving);
+      writePly(output.path("aligned.ply"), pair.moving, result.fixed_from_moving);
+    });
+  }
+  if (arguments.no_pictures) return {};
+  return times.run("pictures", [&] {
+    return writePictures(output.path("exg_maps.png").parent_path(), result,
+                         {arguments.fixed, arguments.moving, options.evidence});
+  });
+}
+
+ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals) {
+  const Stopwatch watch;
+  RegistrationOptions options = chosenOptions(arguments, globals);
+  const OptionTable table = optionTable(options);
+  if (arguments.dump_config) {
+    std::cout << dumpYaml(table);
+    return ExitCode::kOk;
+  }
+  if (arguments.fixed.empty() || arguments.moving.empty() || arguments.output.empty()) {
+    throw UsageError("register needs FIXED, MOVING and -o DIR; see agricolmap register --help");
+  }
+  // First of all, so that the work does not end at a folder that cannot be written.
+  StagedOutput output(arguments.output, globals.overwrite);
+  Progress progress(globals);
+  StageTimes times([&](std::string_view stage) { progress.step(stage); });
+  std::string guess_source;
+  const Eigen::Affine3d guess =
+      initialGuess(arguments.fixed, arguments.moving, arguments.prior, guess_source);
+  const LoadedPair pair = times.run("read", [&] { return load(arguments); });
+  warnOfDropped(pair.fixed);
+  warnOfDropped(pair.moving);
+  const Registration result = registerClouds(pair.fixed, pair.moving, guess, options, times);
+  RegistrationReportInfo info = reportInfo(arguments, globals, pair, table);
+  info.guess = guess;
+  info.guess_source = guess_source;
+  info.pictures = writeResults(arguments, options, pair, result, output, times);
+  info.stage_times = times.stages();
+  info.total_time = watch.seconds();
+  info.peak_memory = peakMemoryBytes();
+  writeText(output.path("registration.json"), registrationJson(result, info).dump(2) + "\n");
+  throwIfInterrupted();
+  std::vector<std::string> stale = pictureNames();
+  stale.insert(stale.end(), {"transform.txt", "aligned.ply"});
+  output.commit(stale);
+  if (!globals.quiet) printSummary(result, arguments.output);
+  return result.verdict.status == Status::kAccepted ? ExitCode::kOk : ExitCode::kRejected;
+}
+
+}  // namespace
+
+CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
+  auto arguments = std::make_shared<RegisterArguments>();
+  CLI::App* command = app.add_subcommand(
+      "register", "Find the transformation that lays MOVING (UGV) into FIXED (UAV)");
+  command->add_option("FIXED", arguments->fixed, "The wide map: PLY or PCD");
+  command->add_option("MOVING", arguments->moving, "The map to be moved: PLY or PCD");
+  command->add_option("-o,--output", arguments->output, "Folder for the results");
+  command->add_option("--prior", arguments->prior,
+                      "Initial guess: 4x4 text, row-major, moving -> fixed file coordinates. "
+                      "Default: offset.xyz beside each cloud, else coordinates as they stand");
+  command->add_option("--preset", arguments->preset, "default or paper [default]");
+  command->add_option("--config", arguments->config, "YAML file with options");
+  command->add_flag("--dump-config", arguments->dump_config,
+                    "Print all options in force as YAML and stop");
+  command->add_flag("--keep-rejected", arguments->keep_rejected,
+                    "Write transform.txt and aligned.ply of a rejected registration, too");
+  command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG pictures");
+  RegistrationOptions defaults;
+  arguments->flags.addTo(*command, optionTable(defaults), "Options of the pipeline");
+  return {command, [arguments, &globals] { return runRegister(*arguments, globals); }};
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,53 @@
+#include "common.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "agricolmap/io/matrix_file.hpp"
+#include "agricolmap/io/offset_file.hpp"
+
+namespace agricolmap {
+
+Progress::Progress(const Globals& globals)
+    : active_(!globals.quiet && globals.verbose == 0 && isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (active_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::step(std::string_view what) {
+  if (active_) {
+    std::fprintf(stderr, "\r\033[K%.*s ...", static_cast<int>(what.size()), what.data());
+    std::fflush(stderr);
+  }
+  spdlog::debug("{}", what);
+}
+
+Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
+                             const std::filesystem::path& moving, const std::string& prior_file,
+                             std::string& source) {
+  if (!prior_file.empty()) {
+    source = prior_file;
+    return readMatrix(prior_file);
+  }
+  const auto world_from_fixed = readOffsetBeside(fixed);
+  const auto world_from_moving = readOffsetBeside(moving);
+  if (!world_from_fixed && !world_from_moving) {
+    source = "coordinates as they stand";
+    return Eigen::Affine3d::Identity();
+  }
+  source = "offset.xyz";
+  const Eigen::Affine3d identity = Eigen::Affine3d::Identity();
+  if (!world_from_fixed || !world_from_moving) {
+    spdlog::warn("only {} has an offset.xyz; {} is taken to be in world coordinates already",
+                 (world_from_fixed ? fixed : moving).string(),
+                 (world_from_fixed ? moving : fixed).string());
+    source = "offset.xyz of one cloud";
+  }
+  return world_from_fixed.value_or(identity).inverse(Eigen::Isometry) *
+         world_from_moving.value_or(identity);
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,59 @@
+// What all commands share: global flags, progress, reading a cloud with its place in the world.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/error.hpp"
+
+namespace agricolmap {
+
+/// Flags that every command takes.
+struct Globals {
+  int threads = 0;
+  int seed = 1;
+  int verbose = 0;
+  bool quiet = false;
+  bool overwrite = false;
+  std::vector<std::string> command_line;
+};
+
+/// Registers one verb; the returned code is the program's.
+using Command = std::function<ExitCode()>;
+struct CommandSlot {
+  CLI::App* app;
+  Command run;
+};
+CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals);
+CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals);
+CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals);
+CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
+CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
+
+/// One line on stderr that names the current step; silent unless stderr is a terminal.
+class Progress {
+ public:
+  explicit Progress(const Globals& globals);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void step(std::string_view what);
+
+ private:
+  bool active_;
+};
+
+/// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside
+/// each cloud (one that has none stands in world coordinates); else identity. Says which in
+/// `source`.
+Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
+                             const std::filesystem::path& moving, const std::string& prior_file,
+                             std::string& source);
+
+}  // namespace agricolmap

@@ -1,0 +1,92 @@
+// The command line: verbs, global flags, and errors as exit codes.
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+#include <vector>
+
+#include "agricolmap/core/interrupt.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "common.hpp"
+
+namespace agricolmap {
+namespace {
+
+constexpr const char* kFooter =
+    "Exit codes: 0 done, registration accepted; 1 internal error; 2 bad usage; 3 bad input;\n"
+    "4 output cannot be written; 10 registration rejected; 130 interrupted.\n"
+    "Lengths are metres, clouds are PLY or PCD, transforms map MOVING to FIXED file coordinates.";
+
+void requireCpu() {
+#if defined(__x86_64__) && defined(__AVX2__)
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) {
+    throw Error(ExitCode::kInternal,
+                "this processor has no AVX2/FMA; build with -DAGRICOLMAP_ARCH= for it");
+  }
+#endif
+}
+
+void setUpLogging(const Globals& globals) {
+  spdlog::set_default_logger(spdlog::stderr_color_st("agricolmap"));
+  spdlog::set_pattern("%^%l%$: %v");
+  spdlog::set_level(globals.quiet         ? spdlog::level::err
+                    : globals.verbose > 0 ? spdlog::level::debug
+                                          : spdlog::level::info);
+}
+
+ExitCode run(int argc, char** argv) {
+  Globals globals;
+  globals.command_line.assign(argv, argv + argc);
+  CLI::App app{
+      "AgriColMap lays a ground robot's 3D map of a crop field into a drone's, to the centimetre."};
+  app.name("agricolmap");
+  app.footer(kFooter);
+  app.set_version_flag("--version", "agricolmap " AGRICOLMAP_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.add_option("--threads", globals.threads, "Number of threads, 0: all cores [0]")
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--seed", globals.seed, "Seed of everything random [1]");
+  app.add_flag("-v,--verbose", globals.verbose, "Say more on stderr");
+  app.add_flag("-q,--quiet", globals.quiet, "Say nothing but errors");
+  app.add_flag("--overwrite", globals.overwrite, "Replace results that exist");
+  const std::vector<CommandSlot> commands = {
+      addRegisterCommand(app, globals), addSimulateCommand(app, globals),
+      addEvaluateCommand(app, globals), addImportCommand(app, globals),
+      addInfoCommand(app, globals)};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage;
+  }
+  setUpLogging(globals);
+  requireCpu();
+  installInterruptHandler();
+  const ThreadLimit limit(globals.threads);
+  for (const CommandSlot& command : commands) {
+    if (command.app->parsed()) return command.run();
+  }
+  return ExitCode::kUsage;
+}
+
+}  // namespace
+}  // namespace agricolmap
+
+int main(int argc, char** argv) {
+  using agricolmap::ExitCode;
+  const auto fail = [](const char* what, ExitCode code) {
+    fmt::print(stderr, "agricolmap: {}\n", what);
+    return static_cast<int>(code);
+  };
+  try {
+    return static_cast<int>(agricolmap::run(argc, argv));
+  } catch (const agricolmap::Error& error) {
+    return fail(error.what(), error.code());
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; crop the clouds or enlarge grid.cell", ExitCode::kInternal);
+  } catch (const std::exception& error) {
+    return fail(error.what(), ExitCode::kInternal);
+  }
+}

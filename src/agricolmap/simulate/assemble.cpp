@@ -1,0 +1,146 @@
+#include "agricolmap/simulate/assemble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/simulate/drift.hpp"
+#include "agricolmap/simulate/geotag.hpp"
+
+namespace agricolmap {
+
+namespace {
+
+constexpr double kStripMargin = 0.3;   // between strip and border of the field [m]
+constexpr double kHidingMargin = 0.5;  // canvas around the strip [m]
+
+bool insideField(const Eigen::Vector2d& point, const Eigen::Vector2d& size) {
+  return point.x() >= 0.0 && point.y() >= 0.0 && point.x() <= size.x() && point.y() <= size.y();
+}
+
+}  // namespace
+
+StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_size,
+                      double row_heading, std::uint64_t seed) {
+  Random random = Random::stream(seed, 9);
+  StripPlace strip;
+  strip.heading = row_heading + options.heading_deg * std::numbers::pi / 180.0;
+  const double c = std::abs(std::cos(strip.heading));
+  const double s = std::abs(std::sin(strip.heading));
+  const Eigen::Vector2d half(0.5 * (options.length * c + options.width * s) + kStripMargin,
+                             0.5 * (options.length * s + options.width * c) + kStripMargin);
+  const Eigen::Vector2d room = field_size - 2.0 * half;
+  if (room.minCoeff() < 0.0) {
+    throw UsageError(fmt::format(
+        "a strip of {} x {} m at {:.0f} degrees does not fit into a field of {} x {} m; enlarge "
+        "field.width and field.height or shorten ugv.length",
+        options.length, options.width, strip.heading * 180.0 / std::numbers::pi, field_size.x(),
+        field_size.y()));
+  }
+  strip.centre = half + Eigen::Vector2d(random.uniform() * room.x(), random.uniform() * room.y());
+  if (options.overhang > 0.0) {
+    // Forwards until the share asked for lies beyond the border.
+    const Eigen::Vector2d ahead(std::cos(strip.heading), std::sin(strip.heading));
+    const double last_inside = options.length * (0.5 - options.overhang);
+    while (insideField(strip.centre + last_inside * ahead, field_size))
+      strip.centre += 0.02 * ahead;
+  }
+  return strip;
+}
+
+Window stripWindow(const StripPlace& strip, const UgvOptions& options) {
+  const double width = options.length + 2.0 * kHidingMargin;
+  const double height = options.width + 2.0 * kHidingMargin;
+  const Eigen::Vector2d corner =
+      strip.centre - Eigen::Rotation2Dd(strip.heading) * Eigen::Vector2d(0.5 * width, 0.5 * height);
+  return makeWindow(corner, strip.heading, width, height,
+                    std::clamp(options.spacing, 0.003, 0.008));
+}
+
+double uavCell(const SimulationOptions& options) {
+  const double blocks = std::max(2.0, std::ceil(options.uav.gsd / 0.008));
+  return options.uav.gsd / blocks;
+}
+
+Visit flightOf(const ViewOptions& views, std::uint64_t seed) {
+  Visit visit;
+  visit.seed = seed;
+  visit.leaf_unshared = views.leaf_unshared;
+  // Half of the variance between the views comes from each; two axes share it.
+  visit.wind = 0.5 * views.wind;
+  visit.solar_hour = views.sun_hour;
+  visit.overcast = views.overcast;
+  return visit;
+}
+
+Visit driveOf(const ViewOptions& views, std::uint64_t seed) {
+  Visit visit = flightOf(views, seed);
+  visit.growth = views.growth;
+  visit.weeds_pulled = views.weeds_pulled;
+  visit.solar_hour = views.sun_hour + views.sun_hours;
+  return visit;
+}
+
+SimulatedPair assemblePair(const SimulationOptions& options, const StripPlace& strip,
+                           FieldPoints above, FieldPoints below, std::uint64_t seed) {
+  if (above.xyz.empty() || below.xyz.empty()) {
+    throw UsageError(
+        "the simulated sensors saw no point; raise uav.density, ugv.edge_density or "
+        "ugv.camera_height");
+  }
+  SimulatedPair pair;
+  const Eigen::Vector3d base =
+      options.geotag.utm ? Eigen::Vector3d(352417.36, 4815306.82, 118.64) : Eigen::Vector3d::Zero();
+  pair.uav.name = "simulated UAV cloud";
+  pair.uav.origin = base;
+  pair.uav.xyz = std::move(above.xyz);
+  pair.uav.rgb = std::move(above.rgb);
+
+  const std::size_t count = below.xyz.size();
+  const double mean_z = parallelSum(count, 1U << 15, 0.0,
+                                    [&](std::size_t begin, std::size_t end) {
+                                      double sum = 0.0;
+                                      for (std::size_t i = begin; i < end; ++i) {
+                                        sum += static_cast<double>(below.xyz[i].z());
+                                      }
+                                      return sum;
+                                    }) /
+                        static_cast<double>(count);
+  pair.strip_centre = base + Eigen::Vector3d(strip.centre.x(), strip.centre.y(), mean_z);
+  pair.strip_heading = strip.heading;
+  const Geotag tag = drawGeotag(options.geotag, pair.strip_centre, seed);
+  pair.nominal = tag.nominal;
+  pair.prior = tag.prior;
+
+  const Drift drift(options.ugv.length, options.ugv.drift, hashBits(seed, 1));
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(strip.heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Vector3d begin = base + Eigen::Vector3d(strip.centre.x(), strip.centre.y(), 0.0) -
+                                turn * Eigen::Vector3d(0.5 * options.ugv.length, 0.0, 0.0);
+  const Eigen::Affine3d file_from_uav = tag.nominal.inverse(Eigen::Affine);
+  pair.ugv.name = "simulated UGV cloud";
+  pair.ugv.origin = (file_from_uav * pair.strip_centre).array().round().matrix();
+  pair.ugv.rgb = std::move(below.rgb);
+  pair.ugv.xyz.resize(count);
+  pair.truth.resize(count);
+  std::vector<Eigen::Vector3d> file(count);
+  parallelFor(
+      count,
+      [&](std::size_t i) {
+        const Eigen::Vector3d local = below.xyz[i].cast<double>();
+        pair.truth[i] = begin + turn * local;
+        const Eigen::Vector3d drifted = pair.truth[i] + turn * drift.at(local.x(), local.y());
+        pair.ugv.xyz[i] = (file_from_uav * drifted - pair.ugv.origin).cast<float>();
+        file[i] = pair.ugv.filePoint(i);
+      },
+      1U << 14);
+  pair.best_affine = fitAffine(file, pair.truth);
+  return pair;
+}
+
+}  // namespace agricolmap

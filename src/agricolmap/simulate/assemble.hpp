@@ -1,0 +1,36 @@
+// The parts that every kind of simulated pair shares: where the strip lies, the two visits, and
+// turning points of the field into files with their truth.
+#pragma once
+
+#include "agricolmap/simulate/render.hpp"
+#include "agricolmap/simulate/simulate.hpp"
+#include "agricolmap/simulate/views.hpp"
+
+namespace agricolmap {
+
+/// Middle of the strip in the field and direction of travel.
+struct StripPlace {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double heading = 0.0;
+};
+
+/// A random place inside a field of the given size, or overhanging its border by the share asked
+/// for. Throws UsageError when the strip does not fit.
+StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_size,
+                      double row_heading, std::uint64_t seed);
+
+/// The strip with a border wide enough for what can hide it.
+Window stripWindow(const StripPlace& strip, const UgvOptions& options);
+
+/// Cell of the UAV's canvas [m]: at least two per ground sampling distance, at most 8 mm.
+double uavCell(const SimulationOptions& options);
+
+Visit flightOf(const ViewOptions& views, std::uint64_t seed);
+Visit driveOf(const ViewOptions& views, std::uint64_t seed);
+
+/// Files, truth and affines from the points of both views. `above` is in the field frame, `below`
+/// as senseFromGround gives it.
+SimulatedPair assemblePair(const SimulationOptions& options, const StripPlace& strip,
+                           FieldPoints above, FieldPoints below, std::uint64_t seed);
+
+}  // namespace agricolmap

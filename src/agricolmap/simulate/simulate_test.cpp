@@ -1,0 +1,364 @@
+#include "agricolmap/simulate/simulate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/simulate/drift.hpp"
+#include "agricolmap/simulate/geotag.hpp"
+#include "agricolmap/simulate/light.hpp"
+#include "agricolmap/simulate/noise.hpp"
+
+namespace agricolmap {
+namespace {
+
+/// A field small enough for tests.
+SimulationOptions smallOptions(Crop crop = Crop::kSugarBeet10m) {
+  SimulationOptions options = cropPreset(crop);
+  options.field.width = 6.0;
+  options.field.height = 6.0;
+  options.ugv.length = 5.0;
+  options.ugv.width = 1.6;
+  options.ugv.spacing = 0.006;
+  options.seed = 7;
+  return options;
+}
+
+double rms(const SimulatedPair& pair, const Eigen::Affine3d& affine) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < pair.truth.size(); ++i) {
+    sum += (affine * pair.ugv.filePoint(i) - pair.truth[i]).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(pair.truth.size()));
+}
+
+/// Mean chromatic ExG and height on 2 cm cells of the strip, in the strip's own axes.
+struct StripMap {
+  static constexpr double kCell = 0.02;
+  StripMap(const SimulatedPair& pair, const SimulationOptions& options)
+      : rows(static_cast<int>(options.ugv.width / kCell)),
+        cols(static_cast<int>(options.ugv.length / kCell)),
+        from(Eigen::Translation3d(0.5 * options.ugv.length, 0.5 * options.ugv.width, 0.0) *
+             Eigen::AngleAxisd(-pair.strip_heading, Eigen::Vector3d::UnitZ()) *
+             Eigen::Translation3d(-pair.strip_centre)),
+        count(rows, cols),
+        exg(rows, cols),
+        height(rows, cols) {}
+  void add(const Eigen::Vector3d& point, Rgb rgb) {
+    const Eigen::Vector3d p = from * point / kCell;
+    const int c = static_cast<int>(std::floor(p.x()));
+    const int r = static_cast<int>(std::floor(p.y()));
+    if (!count.contains(r, c)) return;
+    const int sum = rgb.r + rgb.g + rgb.b;
+    const float green =
+        sum == 0 ? 0.0F : static_cast<float>(3 * rgb.g - sum) / static_cast<float>(sum);
+    count(r, c) += 1.0F;
+    exg(r, c) += (green - exg(r, c)) / count(r, c);
+    height(r, c) += (static_cast<float>(p.z() * kCell) - height(r, c)) / count(r, c);
+  }
+  int rows;
+  int cols;
+  Eigen::Affine3d from;
+  Raster<float> count;
+  Raster<float> exg;
+  Raster<float> height;
+};
+
+StripMap mapFromAbove(const SimulatedPair& pair, const SimulationOptions& options) {
+  StripMap map(pair, options);
+  for (std::size_t i = 0; i < pair.uav.size(); ++i) map.add(pair.uav.filePoint(i), pair.uav.rgb[i]);
+  return map;
+}
+StripMap mapFromGround(const SimulatedPair& pair, const SimulationOptions& options) {
+  StripMap map(pair, options);
+  for (std::size_t i = 0; i < pair.truth.size(); ++i) map.add(pair.truth[i], pair.ugv.rgb[i]);
+  return map;
+}
+
+/// Correlation of the two views' ExG over the cells that both fill, coarse part removed.
+double correlation(const SimulationOptions& options) {
+  const SimulatedPair pair = simulatePair(options);
+  const StripMap a = mapFromAbove(pair, options);
+  const StripMap b = mapFromGround(pair, options);
+  const auto highPassed = [](const StripMap& map) {
+    Raster<float> low = map.exg;
+    Raster<float> weight = map.count;
+    for (float& w : weight) w = w > 0.0F ? 1.0F : 0.0F;
+    blurRaster(low, 0.25 / StripMap::kCell);
+    blurRaster(weight, 0.25 / StripMap::kCell);
+    Raster<float> high = map.exg;
+    for (std::size_t i = 0; i < high.size(); ++i) high[i] -= low[i] / std::max(weight[i], 1e-3F);
+    return high;
+  };
+  const Raster<float> x = highPassed(a);
+  const Raster<float> y = highPassed(b);
+  double n = 0.0;
+  double sx = 0.0;
+  double sy = 0.0;
+  double sxx = 0.0;
+  double syy = 0.0;
+  double sxy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (a.count[i] == 0.0F || b.count[i] == 0.0F) continue;
+    const double u = static_cast<double>(x[i]);
+    const double v = static_cast<double>(y[i]);
+    n += 1.0;
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    syy += v * v;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / std::sqrt((n * sxx - sx * sx) * (n * syy - sy * sy));
+}
+
+TEST(Simulate, PresetsAreWithinTheirLimitsAndDistinct) {
+  for (const Crop crop : {Crop::kSoybean, Crop::kSugarBeet10m, Crop::kSugarBeet20m,
+                          Crop::kWinterWheat, Crop::kMaize}) {
+    SimulationOptions options = cropPreset(crop);
+    EXPECT_EQ(options.crop, crop);
+    EXPECT_NO_THROW(checkOptions(options));
+  }
+  EXPECT_GT(cropPreset(Crop::kSugarBeet20m).uav.gsd, cropPreset(Crop::kSugarBeet10m).uav.gsd);
+}
+
+TEST(Simulate, EveryCropGivesCloudsOfTheExpectedSizeAndExtent) {
+  for (const Crop crop : {Crop::kSoybean, Crop::kWinterWheat, Crop::kMaize}) {
+    const SimulationOptions options = smallOptions(crop);
+    const SimulatedPair pair = simulatePair(options);
+    const double lattice = 36.0 / (options.uav.gsd * options.uav.gsd);
+    EXPECT_NEAR(static_cast<double>(pair.uav.size()), lattice, 0.06 * lattice);
+    const double samples = 5.0 * 1.6 / (0.006 * 0.006);
+    EXPECT_GT(static_cast<double>(pair.ugv.size()), 0.25 * samples);
+    EXPECT_LT(static_cast<double>(pair.ugv.size()), 1.3 * samples);
+    ASSERT_EQ(pair.truth.size(), pair.ugv.size());
+    ASSERT_EQ(pair.ugv.rgb.size(), pair.ugv.size());
+    ASSERT_EQ(pair.uav.rgb.size(), pair.uav.size());
+    const Box3 box = boundingBox(pair.uav);
+    EXPECT_LT(box.extent().x(), 6.01F);
+    EXPECT_GT(box.extent().x(), 5.9F);
+    EXPECT_LT(box.extent().z(), 2.5F);
+    EXPECT_TRUE(pair.overlaps);
+  }
+}
+
+TEST(Simulate, NominalIsTheTruthWithoutDrift) {
+  SimulationOptions options = smallOptions();
+  options.ugv.drift = 0.0;
+  const SimulatedPair exact = simulatePair(options);
+  EXPECT_LT(rms(exact, exact.nominal), 2e-6);
+  EXPECT_LT(rms(exact, exact.best_affine), 2e-6);
+  EXPECT_LT((exact.best_affine.linear() - exact.nominal.linear()).norm(), 1e-5);
+
+  options.ugv.drift = 0.01;
+  const SimulatedPair drifted = simulatePair(options);
+  const double best = rms(drifted, drifted.best_affine);
+  EXPECT_GT(best, 0.0005);
+  EXPECT_LT(best, rms(drifted, drifted.nominal));
+  EXPECT_LT(rms(drifted, drifted.nominal), 0.01 * options.ugv.length);
+}
+
+TEST(Simulate, PriorHasTheErrorsAskedFor) {
+  SimulationOptions options = smallOptions();
+  options.geotag.translation = 2.5;
+  options.geotag.heading_deg = 5.0;
+  options.geotag.scale = 0.2;
+  options.geotag.tilt_deg = 0.0;
+  options.geotag.file_heading_deg = 40.0;
+  const SimulatedPair pair = simulatePair(options);
+  const Eigen::Vector3d centre_in_file = pair.nominal.inverse() * pair.strip_centre;
+  const Eigen::Vector3d error = pair.prior * centre_in_file - pair.strip_centre;
+  EXPECT_NEAR(error.head<2>().norm(), 2.5, 1e-6);
+  EXPECT_NEAR(std::abs(error.z()), options.geotag.z, 1e-6);
+  const Eigen::Matrix3d between = pair.prior.linear().inverse() * pair.nominal.linear();
+  const double turn = std::atan2(between(1, 0), between(0, 0));
+  EXPECT_NEAR(std::abs(turn) * 57.29577951308232, 5.0, 1e-9);
+  for (int k = 0; k < 2; ++k) {
+    const double file_over_field = 1.0 / between.col(k).norm();
+    EXPECT_NEAR(std::abs(file_over_field - 1.0), 0.2, 1e-9);
+  }
+  EXPECT_NEAR(std::atan2(pair.prior(1, 0), pair.prior(0, 0)) * 57.29577951308232, 40.0, 1e-9);
+}
+
+TEST(Simulate, GeoreferencedFilesNeedNoPrior) {
+  SimulationOptions options = smallOptions();
+  options.geotag.ugv_georeferenced = true;
+  const SimulatedPair pair = simulatePair(options);
+  EXPECT_TRUE(pair.prior.isApprox(Eigen::Affine3d::Identity()));
+  // UTM coordinates in both files, precise to a hundredth of a millimetre.
+  EXPECT_GT(pair.ugv.origin.y(), 1e6);
+  EXPECT_GT(pair.uav.origin.y(), 1e6);
+  EXPECT_LT(boundingBox(pair.ugv).extent().maxCoeff(), 20.0F);
+  EXPECT_LT(boundingBox(pair.uav).max.cwiseAbs().maxCoeff(), 20.0F);
+}
+
+TEST(Simulate, SameBitsOnAnyNumberOfThreads) {
+  SimulationOptions options = smallOptions(Crop::kSoybean);
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return simulatePair(options);
+  };
+  const SimulatedPair one = run(1);
+  const SimulatedPair many = run(4);
+  EXPECT_EQ(one.uav.xyz, many.uav.xyz);
+  EXPECT_EQ(one.uav.rgb, many.uav.rgb);
+  EXPECT_EQ(one.ugv.xyz, many.ugv.xyz);
+  EXPECT_EQ(one.ugv.rgb, many.ugv.rgb);
+  EXPECT_EQ(one.truth, many.truth);
+  EXPECT_EQ(one.best_affine.matrix(), many.best_affine.matrix());
+  options.seed = 8;
+  EXPECT_NE(run(2).uav.xyz, one.uav.xyz);
+}
+
+TEST(Simulate, UnsharedLeavesAndOtherFieldsLookDifferent) {
+  SimulationOptions options = smallOptions();
+  options.views.leaf_unshared = 0.0;
+  const double shared = correlation(options);
+  options.views.leaf_unshared = 1.0;
+  const double unshared = correlation(options);
+  options.views.leaf_unshared = 0.0;
+  options.other_field = true;
+  const double other = correlation(options);
+  EXPECT_GT(shared, 0.7);
+  EXPECT_LT(unshared, shared - 0.15);
+  EXPECT_LT(other, unshared - 0.15);
+}
+
+TEST(Simulate, OtherFieldIsMarkedAsNegative) {
+  SimulationOptions options = smallOptions();
+  options.other_field = true;
+  EXPECT_FALSE(simulatePair(options).overlaps);
+}
+
+TEST(Simulate, PlantsHideTheGroundBehindThem) {
+  // Cells that the drone fills and the robot does not: many more with a low camera in a tall crop.
+  const auto missing = [](double camera_height) {
+    SimulationOptions options = smallOptions(Crop::kSoybean);
+    options.ugv.camera_height = camera_height;
+    const SimulatedPair pair = simulatePair(options);
+    const StripMap above = mapFromAbove(pair, options);
+    const StripMap below = mapFromGround(pair, options);
+    int empty = 0;
+    int all = 0;
+    for (std::size_t i = 0; i < above.count.size(); ++i) {
+      if (above.count[i] == 0.0F) continue;
+      ++all;
+      empty += below.count[i] == 0.0F ? 1 : 0;
+    }
+    return static_cast<double>(empty) / all;
+  };
+  EXPECT_GT(missing(0.5), missing(4.0) + 0.05);
+}
+
+TEST(Simulate, GapsThinTheField) {
+  const auto greenShare = [](double gaps) {
+    SimulationOptions options = smallOptions(Crop::kSoybean);
+    options.field.gaps = gaps;
+    const SimulatedPair pair = simulatePair(options);
+    const auto green = std::count_if(pair.uav.rgb.begin(), pair.uav.rgb.end(),
+                                     [](Rgb c) { return 2 * c.g - c.r - c.b > 25; });
+    return static_cast<double>(green) / static_cast<double>(pair.uav.size());
+  };
+  const double dense = greenShare(0.0);
+  const double sparse = greenShare(0.7);
+  EXPECT_GT(dense, 0.3);
+  EXPECT_LT(sparse, 0.75 * dense);
+}
+
+TEST(Simulate, OverhangLeavesTheMap) {
+  SimulationOptions options = smallOptions();
+  options.field.random_row_heading = false;
+  options.ugv.overhang = 0.4;
+  const SimulatedPair pair = simulatePair(options);
+  const double border = pair.uav.origin.x() + options.field.width;
+  const auto outside = std::count_if(pair.truth.begin(), pair.truth.end(),
+                                     [&](const Eigen::Vector3d& p) { return p.x() > border; });
+  EXPECT_NEAR(static_cast<double>(outside) / static_cast<double>(pair.truth.size()), 0.4, 0.05);
+}
+
+TEST(Simulate, RefusesWhatCannotBe) {
+  SimulationOptions options = smallOptions();
+  options.ugv.length = 30.0;
+  EXPECT_THROW(simulatePair(options), UsageError);
+  options = smallOptions();
+  options.views.leaf_unshared = 1.5;
+  EXPECT_THROW(simulatePair(options), UsageError);
+}
+
+TEST(Drift, IsAsLargeAsAskedForAndZeroInTheMiddle) {
+  const Drift drift(10.0, 0.005, 3);
+  EXPECT_LT(drift.at(5.0, 0.0).norm(), 1e-9);
+  double largest = 0.0;
+  for (double x = 0.0; x <= 10.0; x += 0.01) largest = std::max(largest, drift.at(x, 0.0).norm());
+  EXPECT_NEAR(largest, 0.05, 1e-4);
+  // Smooth: no step along the path.
+  for (double x = 0.0; x < 9.99; x += 0.01) {
+    EXPECT_LT((drift.at(x + 0.01, 1.0) - drift.at(x, 1.0)).norm(), 0.002);
+  }
+}
+
+TEST(FitAffine, RecoversAnAffineInUtmCoordinates) {
+  ::agricolmap::Random random(4);
+  Eigen::Affine3d truth = Eigen::Affine3d::Identity();
+  truth.linear() << 0.9, -0.2, 0.01, 0.25, 1.1, 0.0, 0.02, -0.01, 1.0;
+  truth.translation() << 352000.0, 4815000.0, 120.0;
+  std::vector<Eigen::Vector3d> from;
+  std::vector<Eigen::Vector3d> to;
+  for (int i = 0; i < 2000; ++i) {
+    from.emplace_back(random.uniform(0.0, 10.0), random.uniform(0.0, 2.0), random.normal(0.05));
+    to.push_back(truth * from.back());
+  }
+  const Eigen::Affine3d fit = fitAffine(from, to);
+  for (const Eigen::Vector3d& p : from) EXPECT_LT((fit * p - truth * p).norm(), 1e-6);
+}
+
+TEST(Noise, TilesAgreeWithPointsAndHaveUnitDeviation) {
+  const NoiseTile tile(42, -3.0, 30.0, 5.0, 40.0);
+  double sum2 = 0.0;
+  int n = 0;
+  for (double x = -3.0; x <= 30.0; x += 0.37) {
+    for (double y = 5.0; y <= 40.0; y += 0.41) {
+      EXPECT_NEAR(tile(x, y), noiseAt(42, x, y), 1e-4F);
+      sum2 += static_cast<double>(tile(x, y) * tile(x, y));
+      ++n;
+    }
+  }
+  EXPECT_NEAR(std::sqrt(sum2 / n), 1.0, 0.2);
+}
+
+TEST(Light, SunMovesFromEastToWestAndCastsShadowsAway) {
+  EXPECT_GT(sunDirection(9.0).x(), 0.3);
+  EXPECT_LT(sunDirection(15.0).x(), -0.3);
+  EXPECT_LT(sunDirection(12.0).y(), 0.0);
+  // A wall north–south across a plane; the sun in the east shades its west side, whatever the
+  // canvas's heading.
+  for (const double heading : {0.0, 0.6, 1.5708, 2.5, 4.0}) {
+    Canvas canvas;
+    canvas.window = makeWindow({0.0, 0.0}, heading, 2.0, 2.0, 0.01);
+    canvas.cells = Raster<Cell>(200, 200);
+    canvas.ground = Raster<float>(200, 200);
+    const Eigen::Vector2d middle = canvas.window.field({1.0, 1.0});
+    const auto cellAt = [&](double east) -> Cell& {
+      const Eigen::Vector2d p = canvas.window.local(middle + Eigen::Vector2d(east, 0.0)) / 0.01;
+      return canvas.cells(static_cast<int>(p.y()), static_cast<int>(p.x()));
+    };
+    for (int r = 0; r < 200; ++r) {
+      for (int c = 0; c < 200; ++c) {
+        const Eigen::Vector2d p = canvas.window.field(0.01 * Eigen::Vector2d(c + 0.5, r + 0.5));
+        if (std::abs(p.x() - middle.x()) < 0.03) canvas.cells(r, c).z = 0.2F;
+      }
+    }
+    const Eigen::Vector3d sun = Eigen::Vector3d(1.0, 0.0, 1.0).normalized();
+    lightCanvas(canvas, sun, 0.2);
+    EXPECT_LT(cellAt(-0.10).light, 20) << heading;
+    EXPECT_GT(cellAt(0.10).light, 150) << heading;
+    EXPECT_GT(cellAt(-0.40).light, 150) << heading;
+  }
+}
+
+}  // namespace
+}  // namespace agricolmap

@@ -1,0 +1,130 @@
+// What a simulated pair of clouds looks like: the field, how the two views of it differ, the two
+// sensors and the error of the initial guess. Sizes in metres unless named otherwise.
+#pragma once
+
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap {
+
+/// The crops of the paper's data set (Sec. IV-A) and maize, a tall one. "20m" is the beet field
+/// flown at twice the height.
+enum class Crop { kSoybean, kSugarBeet10m, kSugarBeet20m, kWinterWheat, kMaize };
+
+/// The field itself: where plants stand and what the soil is like.
+struct FieldOptions {
+  double width = 20.0;             ///< east–west extent of the UAV map [m]
+  double height = 20.0;            ///< north–south extent of the UAV map [m]
+  bool random_row_heading = true;  ///< rows in a random direction; else `row_heading_deg`
+  double row_heading_deg = 0.0;    ///< direction of the rows from east, counter-clockwise [°]
+  double row_spacing = 0.48;       ///< [m]
+  double plant_spacing = 0.055;    ///< along the row [m]
+  double plant_jitter = 0.25;      ///< deviation along the row, fraction of plant_spacing
+  double lateral_jitter = 0.012;   ///< deviation across the row [m]
+  double gaps = 0.06;              ///< fraction of plants missing
+  double gap_length = 0.4;         ///< length of a cluster of missing plants [m]
+  double row_wobble = 0.03;        ///< slow meandering of the rows, deviation [m]
+  int pass_rows = 6;               ///< rows sown in one pass of the drill
+  double pass_error = 0.02;        ///< deviation of the distance between passes [m]
+  double tramline_spacing = 12.0;  ///< distance of wheel tracks, 0 = none [m]
+  double weeds = 1.0;              ///< mean number of weeds per m², in patches
+  double straw = 0.0;              ///< pieces of straw per m²
+  double plant_size = 1.0;         ///< factor on the crop's usual plant size
+  double size_spread = 0.18;       ///< deviation of plant size from plant to plant, fraction
+  double growth_gradient = 0.15;   ///< deviation of plant size over ~6 m, fraction
+  double relief = 0.02;            ///< deviation of the soil's height over metres [m]
+  double slope = 0.01;             ///< slope of the field in a random direction
+  double ridge = 0.006;            ///< half height of the ridges along the rows [m]
+  double clods = 0.006;            ///< deviation of the soil's height over centimetres [m]
+};
+void describe(OptionTable& table, FieldOptions& options);
+
+/// What is different between the two visits.
+struct ViewOptions {
+  double leaf_unshared = 0.5;  ///< fraction of leaves and of fine soil texture drawn anew
+  double wind = 0.01;          ///< deviation of a plant's top between the views [m]
+  double growth = 1.05;        ///< plant size in the UGV view over that in the UAV view
+  double sun_hour = 10.5;      ///< solar time of the flight [h]
+  double sun_hours = 1.0;      ///< hours from the flight to the drive [h]
+  double overcast = 0.3;       ///< share of light from the whole sky, 1 = no shadows
+  double weeds_pulled = 0.0;   ///< fraction of the weeds gone in the UGV view
+};
+void describe(OptionTable& table, ViewOptions& options);
+
+/// From light to 8-bit colours. Each cloud draws its own response around these.
+struct ColourOptions {
+  double exposure = 1.0;        ///< factor on the automatic exposure
+  double white_balance = 0.06;  ///< deviation of the red and blue gains
+  double gamma_spread = 0.08;   ///< deviation of the tone curve's exponent
+  double saturation = 1.0;      ///< 1 = as the scene, 0 = grey
+  double gradient = 0.07;       ///< deviation of brightness over ~5 m (vignetting, clouds)
+  double noise = 4.0;           ///< deviation per channel, 8-bit counts
+};
+void describe(OptionTable& table, ColourOptions& options);
+
+/// The drone's cloud: seen from above, reconstructed from overlapping pictures.
+struct UavOptions {
+  double gsd = 0.014;               ///< ground sampling distance [m]
+  double density = 1.0;             ///< points per gsd²
+  double jitter = 0.5;              ///< random shift of a sample, fraction of gsd
+  double smoothing = 0.03;          ///< Gaussian smoothing of heights, deviation [m]
+  double colour_blur = 0.6;         ///< blur of colours, deviation in gsd
+  double height_noise = 0.004;      ///< white noise of heights [m]
+  double correlated_noise = 0.006;  ///< noise of heights over ~15 cm [m]
+  double underestimate = 0.25;      ///< fraction of the canopy's height lost besides smoothing
+  double dome = 0.04;               ///< height error of a corner against the centre [m]
+  double holes = 0.01;              ///< fraction of the area without points
+  ColourOptions colour;
+};
+void describe(OptionTable& table, UavOptions& options);
+
+/// The robot's cloud: a narrow strip seen by a forward-looking camera.
+struct UgvOptions {
+  double length = 10.0;        ///< of the strip [m]
+  double width = 2.2;          ///< of the strip [m]
+  double spacing = 0.004;      ///< between samples at the strip's middle [m]
+  double heading_deg = 0.0;    ///< direction of travel against the rows [°]
+  double overhang = 0.0;       ///< fraction of the strip beyond the UAV map's border
+  double camera_height = 1.0;  ///< above the soil [m]
+  double look_near = 0.4;      ///< nearest distance ahead that is mapped [m]
+  double look_far = 1.6;       ///< farthest distance ahead that is mapped [m]
+  double edge_density = 0.4;   ///< density at the strip's edges over that in its middle
+  double smoothing = 0.005;    ///< Gaussian smoothing of heights, deviation [m]
+  double noise = 0.003;        ///< noise along the viewing ray [m]
+  double pose_noise = 0.003;   ///< shift of each camera position's points, deviation [m]
+  double side_points = 0.25;   ///< share of steps in height that get points on their side
+  double outliers = 0.002;     ///< fraction of flying points
+  double drift = 0.005;        ///< largest drift of the path over its length
+  ColourOptions colour;
+};
+void describe(OptionTable& table, UgvOptions& options);
+
+/// Error of the initial guess, see SimulatedPair::prior.
+struct GeotagOptions {
+  double translation = 1.0;       ///< horizontal error at the strip's centre [m]
+  double heading_deg = 2.0;       ///< [°], random sign
+  double scale = 0.05;            ///< on the UGV file's x and y axes, signs independent
+  double z = 0.3;                 ///< vertical error [m], random sign
+  double tilt_deg = 0.5;          ///< roll and pitch error [°], random signs
+  bool uniform = false;           ///< magnitudes uniform from 0 to the values above
+  double file_heading_deg = 0.0;  ///< true heading of the UGV file's x axis [°], known to the prior
+  bool utm = true;                ///< UAV file in UTM coordinates, else from (0, 0, 0)
+  bool ugv_georeferenced = false;  ///< UGV file in the UAV file's coordinates: identity prior
+};
+void describe(OptionTable& table, GeotagOptions& options);
+
+struct SimulationOptions {
+  Crop crop = Crop::kSoybean;
+  FieldOptions field;
+  ViewOptions views;
+  UavOptions uav;
+  UgvOptions ugv;
+  GeotagOptions geotag;
+  int seed = 1;
+  bool other_field = false;  ///< the strip comes from another field of the same settings
+};
+void describe(OptionTable& table, SimulationOptions& options);
+
+/// Usual layouts and sensors for a crop.
+SimulationOptions cropPreset(Crop crop);
+
+}  // namespace agricolmap
