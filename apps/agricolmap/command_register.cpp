@@ -1,6 +1,5 @@
 // agricolmap register FIXED MOVING -o DIR
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <iostream>
@@ -81,6 +80,36 @@ void warnOfDropped(const Cloud& cloud) {
                cloud.dropped_points);
 }
 
+/// The command line as one line of text, quoted where a shell would need it.
+std::string commandText(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    if (!text.empty()) text += ' ';
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?&|;<>()[]{}#~!") == std::string::npos;
+    if (plain) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += '\'';
+  }
+  return text;
+}
+
+RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
+                                  const OptionTable& table) {
+  RegistrationReportInfo info;
+  info.version = AGRICOLMAP_VERSION;
+  info.seed = static_cast<std::uint64_t>(globals.seed);
+  info.threads = globals.threads;
+  info.command_line = commandText(globals.command_line);
+  info.preset = arguments.preset;
+  info.options = toJson(table);
+  return info;
+}
+
 /// Fills `output` with everything but the report.
 std::vector<std::string> writeResults(const RegisterArguments& arguments,
                                       const RegistrationOptions& options, const LoadedPair& pair,
@@ -115,22 +144,12 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   StageTimes times([&](std::string_view stage) { progress.step(stage); });
-  std::string guess_source;
-  const Eigen::Affine3d guess =
-      initialGuess(arguments.fixed, arguments.moving, arguments.prior, guess_source);
+  RegistrationReportInfo info = reportInfo(arguments, globals, table);
+  info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
   const LoadedPair pair = times.run("read", [&] { return load(arguments); });
   warnOfDropped(pair.fixed);
   warnOfDropped(pair.moving);
-  const Registration result = registerClouds(pair.fixed, pair.moving, guess, options, times);
-  RegistrationReportInfo info;
-  info.version = AGRICOLMAP_VERSION;
-  info.seed = static_cast<std::uint64_t>(globals.seed);
-  info.threads = globals.threads;
-  info.command_line = fmt::format("{}", fmt::join(globals.command_line, " "));
-  info.preset = arguments.preset;
-  info.prior = guess;
-  info.prior_source = guess_source;
-  info.options = toJson(table);
+  const Registration result = registerClouds(pair.fixed, pair.moving, info.prior, options, times);
   info.pictures = writeResults(arguments, options, pair, result, output, times);
   writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result, times,
                         info);
