@@ -21,12 +21,13 @@
 namespace agricolmap {
 
 enum class AssociationKind { kCorrelation, kFlow };
-enum class RefineKind { kDense, kCpd, kNone };
+/// kDenseCpd: densely, then CPD where the vegetation can be told from the soil.
+enum class RefineKind { kDenseCpd, kDense, kCpd, kNone };
 
 struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
-  RefineKind refine = RefineKind::kDense;
+  RefineKind refine = RefineKind::kDenseCpd;
   PriorUncertainty prior;
   LevelOptions level;
   GridOptions grid;

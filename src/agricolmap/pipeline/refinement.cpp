@@ -105,7 +105,14 @@ RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, S
     }
   });
   return times.run("refine", [&]() -> RefineOutcome {
-    if (options_.refine == RefineKind::kDense) return refineDensely(std::move(poses), counts);
+    if (options_.refine == RefineKind::kDense || options_.refine == RefineKind::kDenseCpd) {
+      RefineOutcome dense = refineDensely(std::move(poses), counts);
+      if (!dense.best || options_.refine == RefineKind::kDense) return dense;
+      // Closed canopy or a map without colours has no vegetation points; the report says so.
+      const RefineOutcome points = refineByPoints(*dense.best, counts);
+      counts.emplace_back("cpd_used", points.best ? 1.0 : 0.0);
+      return points.best ? points : dense;
+    }
     if (!poses.front()) return {std::nullopt, "the coherent matches determine no affine"};
     if (options_.refine == RefineKind::kCpd) return refineByPoints(*poses.front(), counts);
     poses.front()->significance = meter_->significance(poses.front()->pose);
