@@ -90,10 +90,12 @@ CpdSums CpdMixture::at(const Eigen::Vector3f& query, const CpdWidths& widths) co
       const Lanes dy = Eigen::Map<const Lanes>(y_.data() + i) - query.y();
       const Lanes dz = Eigen::Map<const Lanes>(z_.data() + i) - query.z();
       const Lanes square = dx * dx + dy * dy;
-      const Lanes kernel = (square < radius * radius && lane < static_cast<float>(end - i))
-                               .select((horizontal * square + vertical * dz * dz).exp() *
-                                           Eigen::Map<const Lanes>(weight_.data() + i),
-                                       Lanes::Zero());
+      Lanes kernel = (horizontal * square + vertical * dz * dz).exp();
+      kernel *= Eigen::Map<const Lanes>(weight_.data() + i);
+      // 1 inside the circle and the run, 0 outside; Eigen's select would make scalar code of it
+      // all.
+      kernel *= (1e30F * (radius * radius - square)).max(0.0F).min(1.0F);
+      kernel *= (static_cast<float>(end - i) - lane).max(0.0F).min(1.0F);
       lanes.weight += kernel;
       lanes.x += kernel * dx;
       lanes.y += kernel * dy;

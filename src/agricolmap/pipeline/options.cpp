@@ -22,6 +22,7 @@ void describe(OptionTable& table, RegistrationOptions& options) {
   table.group("flow", options.flow);
   table.group("affine", options.affine);
   table.group("dense", options.dense);
+  table.group("vegetation", options.vegetation);
   table.group("cpd", options.cpd);
   table.group("vertical", options.vertical);
   table.group("evidence", options.evidence);

@@ -13,6 +13,7 @@
 #include "agricolmap/5_affine/estimate_affine.hpp"
 #include "agricolmap/6_refine/cpd.hpp"
 #include "agricolmap/6_refine/dense_refine.hpp"
+#include "agricolmap/6_refine/vegetation.hpp"
 #include "agricolmap/6_refine/vertical.hpp"
 #include "agricolmap/7_verdict/verdict.hpp"
 #include "agricolmap/core/options.hpp"
@@ -34,6 +35,7 @@ struct RegistrationOptions {
   FlowAssociationOptions flow;
   AffineOptions affine;
   DenseRefineOptions dense;
+  VegetationOptions vegetation;
   CpdOptions cpd;
   VerticalOptions vertical;
   EvidenceOptions evidence;
