@@ -241,7 +241,8 @@ bool work(const Arguments& arguments, const std::vector<Job>& jobs, RealFields& 
       PairRow row = registerPair(pair, name);
       row.case_name = job.chosen->name;
       row.seed = job.seed;
-      row.threads = arguments.threads;
+      row.threads = static_cast<int>(
+          tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
       row.simulate_s = simulate_s;
       table.append(row);
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -104,32 +105,98 @@ Raster<T> southFirst(const Raster<T>& raster) {
   return flipped;
 }
 
-/// Heights of a raster that lies exactly on the mosaic's pixels, row 0 south; those missing are the
-/// mean, since the simulator wants numbers.
-Raster<float> heightsOn(const RasterImage& mosaic, const std::filesystem::path& path,
-                        Raster<std::uint8_t>& valid) {
-  const RasterHeights heights = readHeights(path);
-  const auto& here = heights.place.world_from_pixel;
-  if (heights.height.rows() != mosaic.colour.rows() ||
-      heights.height.cols() != mosaic.colour.cols() || !here ||
-      !here->isApprox(*mosaic.place.world_from_pixel, 1e-9)) {
-    throw InputError(
-        fmt::format("{}: does not lie on the pixels of {}", path.string(), mosaic.name));
+/// A grid with square cells, row 0 south, over the area of a mosaic.
+struct SquareGrid {
+  double gsd = 0.0;                                  ///< [m]
+  Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< south-west [m]
+  int rows = 0;
+  int cols = 0;
+};
+
+const Eigen::Affine2d& placeOf(const RasterPlace& place, const std::string& name) {
+  if (!place.world_from_pixel) throw InputError(fmt::format("{}: has no georeference", name));
+  const Eigen::Matrix2d pixel = place.world_from_pixel->linear();
+  if (!(pixel(0, 0) > 0.0) || !(pixel(1, 1) < 0.0) || pixel(0, 1) != 0.0 || pixel(1, 0) != 0.0) {
+    throw InputError(fmt::format("{}: is not north up", name));
   }
-  Raster<float> flipped = southFirst(heights.height);
+  return *place.world_from_pixel;
+}
+
+SquareGrid squareGrid(const RasterImage& mosaic) {
+  const Eigen::Affine2d& world = placeOf(mosaic.place, mosaic.name);
+  SquareGrid grid;
+  grid.gsd = -world.linear()(1, 1);
+  grid.corner = world * Eigen::Vector2d(0.0, mosaic.colour.rows());
+  grid.rows = mosaic.colour.rows();
+  grid.cols = static_cast<int>(mosaic.colour.cols() * world.linear()(0, 0) / grid.gsd);
+  return grid;
+}
+
+/// Bilinear mean of `value(row, col)` at the centre of each cell, clamped at the raster's borders.
+/// `put(cell, mean)` takes it.
+template <typename Value, typename Put>
+void resample(const SquareGrid& grid, const Eigen::Affine2d& world, int rows, int cols,
+              const Value& value, const Put& put) {
+  const Eigen::Affine2d pixel_from_world = world.inverse();
+  for (int r = 0; r < grid.rows; ++r) {
+    for (int c = 0; c < grid.cols; ++c) {
+      const Eigen::Vector2d point = grid.corner + grid.gsd * Eigen::Vector2d(c + 0.5, r + 0.5);
+      const Eigen::Vector2d at = pixel_from_world * point - Eigen::Vector2d::Constant(0.5);
+      const double x = std::clamp(at.x(), 0.0, cols - 1.001);
+      const double y = std::clamp(at.y(), 0.0, rows - 1.001);
+      const int left = static_cast<int>(x);
+      const int top = static_cast<int>(y);
+      const double fx = x - left;
+      const double fy = y - top;
+      put(static_cast<std::size_t>(r) * grid.cols + c,
+          ((1.0 - fx) * value(top, left) + fx * value(top, left + 1)) * (1.0 - fy) +
+              ((1.0 - fx) * value(top + 1, left) + fx * value(top + 1, left + 1)) * fy);
+    }
+  }
+}
+
+void resampleColours(const RasterImage& mosaic, const SquareGrid& grid, OrthoField& field) {
+  const Eigen::Affine2d& world = placeOf(mosaic.place, mosaic.name);
+  const int rows = mosaic.colour.rows();
+  const int cols = mosaic.colour.cols();
+  field.colour = Raster<Rgb>(grid.rows, grid.cols);
+  field.valid = Raster<std::uint8_t>(grid.rows, grid.cols, 1);
+  for (std::uint8_t Rgb::*band : {&Rgb::r, &Rgb::g, &Rgb::b}) {
+    resample(
+        grid, world, rows, cols,
+        [&](int r, int c) { return static_cast<double>(mosaic.colour(r, c).*band); },
+        [&](std::size_t i, double mean) {
+          field.colour[i].*band = static_cast<std::uint8_t>(mean + 0.5);
+        });
+  }
+  resample(
+      grid, world, rows, cols, [&](int r, int c) { return mosaic.valid(r, c) != 0 ? 1.0 : 0.0; },
+      [&](std::size_t i, double share) { field.valid[i] = share > 0.999 ? 1 : 0; });
+}
+
+/// Cells without a height become invalid and get the mean height, since the simulator wants
+/// numbers.
+Raster<float> resampleHeights(const std::filesystem::path& path, const SquareGrid& grid,
+                              Raster<std::uint8_t>& valid) {
+  const RasterHeights heights = readHeights(path);
   double sum = 0.0;
   std::size_t count = 0;
-  for (const float h : flipped) {
+  for (const float h : heights.height) {
     if (!std::isfinite(h)) continue;
     sum += static_cast<double>(h);
     ++count;
   }
-  for (std::size_t i = 0; i < flipped.size(); ++i) {
-    if (std::isfinite(flipped[i])) continue;
-    flipped[i] = static_cast<float>(sum / static_cast<double>(count));
-    valid[i] = 0;
-  }
-  return flipped;
+  if (count == 0) throw InputError(fmt::format("{}: has no heights", path.string()));
+  const double mean_height = sum / static_cast<double>(count);
+  Raster<float> result(grid.rows, grid.cols);
+  resample(
+      grid, placeOf(heights.place, path.string()), heights.height.rows(), heights.height.cols(),
+      [&](int r, int c) { return static_cast<double>(heights.height(r, c)); },
+      [&](std::size_t i, double mean) {
+        if (!std::isfinite(mean)) valid[i] = 0;
+        result[i] = static_cast<float>(std::isfinite(mean) ? mean : mean_height);
+      });
+  return result;
 }
 
 CampaignPair fromSimulation(SimulatedPair pair) {
@@ -209,28 +276,17 @@ RealFields::Soybean RealFields::loadSoybean(const std::filesystem::path& folder)
   Soybean loaded;
   loaded.cloud = importOrthoDsm(folder / "soy_ortho.tif", folder / "soy_dsm.tif");
   const RasterImage mosaic = readRaster(folder / "soy_ortho.tif");
-  if (!mosaic.place.world_from_pixel) {
-    throw InputError(fmt::format("{}: has no georeference", mosaic.name));
-  }
-  const Eigen::Affine2d world = *mosaic.place.world_from_pixel;
-  const Eigen::Matrix2d pixel = world.linear();
-  const double gsd = pixel(0, 0);
-  if (!(gsd > 0.0) || std::abs(pixel(1, 1) + gsd) > 1e-6 * gsd || pixel(0, 1) != 0.0 ||
-      pixel(1, 0) != 0.0) {
-    throw InputError(fmt::format("{}: is not north up with square pixels", mosaic.name));
-  }
+  const SquareGrid grid = squareGrid(mosaic);
   OrthoField& field = loaded.field;
   field.name = mosaic.name;
-  field.gsd = gsd;
+  field.gsd = grid.gsd;
   field.row_heading = kSoybeanRowHeading;
-  field.colour = southFirst(mosaic.colour);
-  field.valid = southFirst(mosaic.valid);
-  field.height = heightsOn(mosaic, folder / "soy_dsm.tif", field.valid);
-  field.ground = heightsOn(mosaic, folder / "soy_dtm.tif", field.valid);
-  const Eigen::Vector2d corner = world * Eigen::Vector2d(0.0, mosaic.colour.rows());
+  resampleColours(mosaic, grid, field);
+  field.height = resampleHeights(folder / "soy_dsm.tif", grid, field.valid);
+  field.ground = resampleHeights(folder / "soy_dtm.tif", grid, field.valid);
   // The simulator counts heights from the ground in the middle of the mosaic.
   const float zero = field.ground(field.ground.rows() / 2, field.ground.cols() / 2);
-  loaded.place = {corner.x(), corner.y(), static_cast<double>(zero)};
+  loaded.place = {grid.corner.x(), grid.corner.y(), static_cast<double>(zero)};
   return loaded;
 }
 

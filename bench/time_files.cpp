@@ -43,6 +43,7 @@ struct Arguments {
   int repeats = 3;
   int seed = 4242;
   bool baseline = false;  ///< be the program that reads and grids
+  std::string make_pair;  ///< be the program that writes the pair into this folder
 };
 
 /// A folder that goes with the program.
@@ -103,20 +104,28 @@ ProcessCost runProgram(const std::vector<std::string>& command,
   return cost;
 }
 
-/// A pair of about 2 and 1 million points in files, with the largest guess errors.
-void writePair(Arguments& arguments, const fs::path& folder) {
+/// Writes a pair of about 2 and 1 million points with the largest guess errors.
+void writePair(int seed, const fs::path& folder) {
   SimulationOptions simulation = cropPreset(Crop::kSoybean);
-  simulation.seed = arguments.seed;
+  simulation.seed = seed;
   simulation.geotag.translation = 5.0;
   simulation.geotag.heading_deg = 11.5;
   simulation.geotag.scale = 0.3;
   const SimulatedPair pair = simulatePair(simulation);
+  writePly(folder / "uav.ply", pair.uav);
+  writePly(folder / "ugv.ply", pair.ugv);
+  writeMatrix(folder / "prior.txt", pair.prior);
+}
+
+/// The same in a process of its own: the system counts what a parent holds towards its children's
+/// peak memory.
+void makePair(Arguments& arguments, const fs::path& folder) {
+  runProgram({fs::read_symlink("/proc/self/exe").string(), "--make-pair", folder.string(), "--seed",
+              std::to_string(arguments.seed)},
+             {0});
   arguments.fixed = folder / "uav.ply";
   arguments.moving = folder / "ugv.ply";
   arguments.prior = folder / "prior.txt";
-  writePly(arguments.fixed, pair.uav);
-  writePly(arguments.moving, pair.ugv);
-  writeMatrix(arguments.prior, pair.prior);
 }
 
 /// What every program of this kind must do at least: read both files and lay all points into maps.
@@ -195,7 +204,7 @@ void measure(Arguments arguments) {
     arguments.program = fs::read_symlink("/proc/self/exe").parent_path() / "agricolmap";
   }
   const WorkFolder folder;
-  if (arguments.fixed.empty()) writePair(arguments, folder.path());
+  if (arguments.fixed.empty()) makePair(arguments, folder.path());
   std::string text = "program,threads,repeat,quantity,value\n";
   for (int repeat = 1; repeat <= arguments.repeats; ++repeat) {
     for (const int threads : arguments.threads) {
@@ -221,6 +230,7 @@ int run(int argc, char** argv) {
   app.add_option("--repeats", arguments.repeats, "Repeats [3]")->check(CLI::Range(1, 1000));
   app.add_option("--seed", arguments.seed, "Seed of the simulated pair [4242]");
   app.add_flag("--baseline", arguments.baseline, "Read and grid --fixed and --moving and stop");
+  app.add_option("--make-pair", arguments.make_pair, "Write the simulated pair there and stop");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -228,6 +238,10 @@ int run(int argc, char** argv) {
   }
   if (arguments.baseline) {
     readAndGrid(arguments);
+    return 0;
+  }
+  if (!arguments.make_pair.empty()) {
+    writePair(arguments.seed, arguments.make_pair);
     return 0;
   }
   if (arguments.output.empty()) throw UsageError("needs --output FILE; see --help");
