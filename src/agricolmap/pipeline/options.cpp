@@ -39,6 +39,9 @@ RegistrationOptions preset(const std::string& name) {
     options.association = AssociationKind::kFlow;
     options.refine = RefineKind::kCpd;
     options.grid.exg = ExgKind::kPlain;
+    // One flow from the guess as it is; see FlowAssociation for what goes beyond the paper.
+    options.flow.warps = false;
+    options.flow.rematch = false;
     return options;
   }
   throw UsageError(

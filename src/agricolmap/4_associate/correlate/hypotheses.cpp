@@ -23,6 +23,7 @@ class Lattice {
       if (limits[i] > 0.0) free_.push_back(i);
     }
     const auto n = static_cast<Eigen::Index>(free_.size());
+    if (n == 0) return;
     Eigen::MatrixXd reduced(n, n);
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = 0; j < n; ++j) {
