@@ -11,7 +11,6 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud_reader.hpp"
 #include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/file_sink.hpp"
 #include "agricolmap/io/matrix_file.hpp"
 #include "agricolmap/io/staged_output.hpp"
 #include "agricolmap/pipeline/registration.hpp"
@@ -81,15 +80,32 @@ void warnOfDropped(const Cloud& cloud) {
                cloud.dropped_points);
 }
 
+/// The command line as one line of text, quoted where a shell would need it.
+std::string commandText(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    if (!text.empty()) text += ' ';
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?&|;<>()[]{}#~!") == std::string::npos;
+    if (plain) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += '\'';
+  }
+  return text;
+}
+
 RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
-                                  const LoadedPair& pair, const OptionTable& table) {
+                                  const OptionTable& table) {
   RegistrationReportInfo info;
   info.version = AGRICOLMAP_VERSION;
   info.seed = static_cast<std::uint64_t>(globals.seed);
   info.threads = globals.threads;
-  info.command_line = globals.command_line;
-  info.fixed = cloudReport(pair.fixed, arguments.fixed);
-  info.moving = cloudReport(pair.moving, arguments.moving);
+  info.command_line = commandText(globals.command_line);
+  info.preset = arguments.preset;
   info.options = toJson(table);
   return info;
 }
@@ -115,7 +131,6 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
 }
 
 ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals) {
-  const Stopwatch watch;
   RegistrationOptions options = chosenOptions(arguments, globals);
   const OptionTable table = optionTable(options);
   if (arguments.dump_config) {
@@ -129,21 +144,15 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   StageTimes times([&](std::string_view stage) { progress.step(stage); });
-  std::string guess_source;
-  const Eigen::Affine3d guess =
-      initialGuess(arguments.fixed, arguments.moving, arguments.prior, guess_source);
+  RegistrationReportInfo info = reportInfo(arguments, globals, table);
+  info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
   const LoadedPair pair = times.run("read", [&] { return load(arguments); });
   warnOfDropped(pair.fixed);
   warnOfDropped(pair.moving);
-  const Registration result = registerClouds(pair.fixed, pair.moving, guess, options, times);
-  RegistrationReportInfo info = reportInfo(arguments, globals, pair, table);
-  info.guess = guess;
-  info.guess_source = guess_source;
+  const Registration result = registerClouds(pair.fixed, pair.moving, info.prior, options, times);
   info.pictures = writeResults(arguments, options, pair, result, output, times);
-  info.stage_times = times.stages();
-  info.total_time = watch.seconds();
-  info.peak_memory = peakMemoryBytes();
-  writeText(output.path("registration.json"), registrationJson(result, info).dump(2) + "\n");
+  writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result, times,
+                        info);
   throwIfInterrupted();
   std::vector<std::string> stale = pictureNames();
   stale.insert(stale.end(), {"transform.txt", "aligned.ply"});

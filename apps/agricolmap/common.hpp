@@ -35,6 +35,7 @@ CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
+CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);
 
 /// One line on stderr that names the current step; silent unless stderr is a terminal.
 class Progress {

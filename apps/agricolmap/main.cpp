@@ -55,9 +55,17 @@ ExitCode run(int argc, char** argv) {
   const std::vector<CommandSlot> commands = {
       addRegisterCommand(app, globals), addSimulateCommand(app, globals),
       addEvaluateCommand(app, globals), addImportCommand(app, globals),
-      addInfoCommand(app, globals)};
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    // CLI11 would only say that a verb is missing.
+    const std::vector<std::string> words = app.remaining();
+    if (words.empty() || words.front().starts_with("-")) {
+      app.exit(error);
+      return ExitCode::kUsage;
+    }
+    throw UsageError(fmt::format("there is no verb '{}'; see agricolmap --help", words.front()));
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage;
   }

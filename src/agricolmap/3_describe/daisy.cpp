@@ -72,13 +72,14 @@ void normaliseByKnown(Ring& ring, bool unit_length) {
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
         for (int col = 0; col < ring.layers.cols; ++col) {
+          if (ring.known(row, col) < kKnownShare) continue;
           float* cell = ring.layers.cell(row, col);
           float scale = 0.0F;
           if (unit_length) {
             float norm2 = 0.0F;
             for (int k = 0; k < kDaisyOrientations; ++k) norm2 += cell[k] * cell[k];
             scale = norm2 > kTiny ? 1.0F / std::sqrt(norm2) : 0.0F;
-          } else if (ring.known(row, col) > kTiny) {
+          } else {
             scale = 1.0F / ring.known(row, col);
           }
           for (int k = 0; k < kDaisyOrientations; ++k) cell[k] *= scale;
@@ -166,6 +167,8 @@ void computeDaisy(std::span<const MaskedRaster> channels, const DaisyOptions& op
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
         for (int col = 0; col < weight.cols(); ++col) {
+          // What lies off the known ground is never matched.
+          if (rings.front().known(row, col) < kKnownShare) continue;
           const std::size_t i = weight.index(row, col);
           out.known[i] |= writeCell(rings, points, row, col, full,
                                     out.bytes.data() + i * DescriptorMap::kStride);

@@ -39,7 +39,8 @@ inline constexpr float kDaisyScaleFull = 768.0F;
 /// Fills the DAISY bytes and bits of `out`, which has the channels' size. With several channels
 /// (the colours) their orientation maps are added before they are normalised. Empty cells have no
 /// part: gradients come from a normalised convolution, histograms are means over known cells, and
-/// sample points on unknown ground are marked as such. Invariant to gain and bias of all channels
+/// sample points on unknown ground are marked as such. Cells with unknown surroundings
+/// are left out. Invariant to gain and bias of all channels
 /// together.
 void computeDaisy(std::span<const MaskedRaster> channels, const DaisyOptions& options,
                   DescriptorMap& out);

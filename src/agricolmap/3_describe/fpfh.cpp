@@ -174,10 +174,15 @@ void pairAngles(const Surface& s, int row, const Neighbour& n, int first, int la
 void spfhRow(const Surface& s, const std::vector<Neighbour>& neighbours, int row, BinRow& bins,
              std::uint8_t* counts, std::uint8_t* pairs) {
   const int cols = s.z.cols();
+  const float* known = s.known.row(row);
+  int begin = 0;
+  int end = cols;
+  while (begin < end && known[begin] <= 0.0F) ++begin;
+  while (end > begin && known[end - 1] <= 0.0F) --end;
   for (const Neighbour& n : neighbours) {
     if (row + n.row < 0 || row + n.row >= s.z.rows()) continue;
-    const int first = std::max(0, -n.col);
-    const int last = std::min(cols, cols - n.col);
+    const int first = std::max(begin, -n.col);
+    const int last = std::min(end, cols - n.col);
     pairAngles(s, row, n, first, last, bins);
     for (int c = first; c < last; ++c) {
       const auto i = static_cast<std::size_t>(c);

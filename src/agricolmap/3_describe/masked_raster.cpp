@@ -11,11 +11,37 @@ namespace {
 
 constexpr std::size_t kRowGrain = 8;
 
+/// Columns that are not all zero: a strip that lies askew fills little of its bounding box.
+struct Span {
+  int begin = 0;
+  int end = 0;
+
+  bool empty() const { return begin >= end; }
+  Span widened(int by, int cols) const {
+    return empty() ? Span{} : Span{std::max(begin - by, 0), std::min(end + by, cols)};
+  }
+  void include(const Span& other) {
+    if (other.empty()) return;
+    *this = empty() ? other : Span{std::min(begin, other.begin), std::max(end, other.end)};
+  }
+};
+
+Span spanOf(const float* row, int cols, int depth) {
+  const auto used = [&](int col) {
+    const float* cell = row + static_cast<std::ptrdiff_t>(col) * depth;
+    return std::any_of(cell, cell + depth, [](float value) { return value != 0.0F; });
+  };
+  Span span{0, cols};
+  while (span.begin < cols && !used(span.begin)) ++span.begin;
+  while (span.end > span.begin && !used(span.end - 1)) --span.end;
+  return span;
+}
+
 /// One row along x. `kDepth` floats per cell; the kernel is symmetric.
 template <int kDepth>
-void smoothRow(const float* in, float* out, int cols, const std::vector<float>& kernel) {
+void smoothRow(const float* in, float* out, int cols, Span span, const std::vector<float>& kernel) {
   const int radius = static_cast<int>(kernel.size() / 2);
-  for (int col = 0; col < cols; ++col) {
+  for (int col = span.begin; col < span.end; ++col) {
     const int first = std::max(-radius, -col);
     const int last = std::min(radius, cols - 1 - col);
     float sum[kDepth] = {};
@@ -28,16 +54,17 @@ void smoothRow(const float* in, float* out, int cols, const std::vector<float>& 
   }
 }
 
-/// One row along y, from the rows around it, in strips of columns that stay in registers.
+/// Floats [begin, end) of one row along y, from the rows around it, in strips of columns that stay
+/// in registers.
 void smoothColumn(const float* in, float* out, int row, int rows, std::size_t width,
-                  const std::vector<float>& kernel) {
+                  std::size_t begin, std::size_t end, const std::vector<float>& kernel) {
   constexpr std::size_t kStrip = 32;
   const int radius = static_cast<int>(kernel.size() / 2);
   const int first = std::max(-radius, -row);
   const int last = std::min(radius, rows - 1 - row);
-  for (std::size_t begin = 0; begin < width; begin += kStrip) {
+  for (; begin < end; begin += kStrip) {
     float sum[kStrip] = {};
-    const std::size_t count = std::min(kStrip, width - begin);
+    const std::size_t count = std::min(kStrip, end - begin);
     for (int k = first; k <= last; ++k) {
       const float weight = kernel[static_cast<std::size_t>(k + radius)];
       const float* source = in + static_cast<std::size_t>(row + k) * width + begin;
@@ -51,22 +78,34 @@ void smoothColumn(const float* in, float* out, int row, int rows, std::size_t wi
   }
 }
 
+/// `out` must be zero.
 template <int kDepth>
 void smoothInto(const float* in, float* out, int rows, int cols, double sigma) {
   const std::vector<float> kernel = gaussianKernel(sigma);
+  const int radius = static_cast<int>(kernel.size() / 2);
   const std::size_t width = static_cast<std::size_t>(cols) * kDepth;
-  std::vector<float> across(width * static_cast<std::size_t>(rows));
   const auto count = static_cast<std::size_t>(rows);
+  std::vector<float> across(width * count);
+  std::vector<Span> spans(count);
   parallelFor(
       count,
       [&](std::size_t row) {
-        smoothRow<kDepth>(in + row * width, across.data() + row * width, cols, kernel);
+        const float* source = in + row * width;
+        spans[row] = spanOf(source, cols, kDepth).widened(radius, cols);
+        smoothRow<kDepth>(source, across.data() + row * width, cols, spans[row], kernel);
       },
       kRowGrain);
   parallelFor(
       count,
-      [&](std::size_t row) {
-        smoothColumn(across.data(), out, static_cast<int>(row), rows, width, kernel);
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        Span span;
+        for (int k = std::max(row - radius, 0); k <= std::min(row + radius, rows - 1); ++k) {
+          span.include(spans[static_cast<std::size_t>(k)]);
+        }
+        smoothColumn(across.data(), out, row, rows, width,
+                     static_cast<std::size_t>(span.begin) * kDepth,
+                     static_cast<std::size_t>(span.end) * kDepth, kernel);
       },
       kRowGrain);
 }

@@ -12,8 +12,9 @@ void describe(OptionTable& table, RegistrationOptions& options) {
              "use heights alone, as clouds without colours need");
   table.choice("association", options.association, {"correlation", "flow"},
                "how the moving map is placed: global correlation search or the paper's flow");
-  table.choice("refine", options.refine, {"dense", "cpd", "none"},
-               "how the placement is refined: Gauss-Newton on the maps, or CPD on the vegetation");
+  table.choice(
+      "refine", options.refine, {"dense+cpd", "dense", "cpd", "none"},
+      "how the placement is refined: Gauss-Newton on the maps, CPD on the vegetation, or both");
   table.group("prior", options.prior);
   table.group("level", options.level);
   table.group("grid", options.grid);
@@ -22,6 +23,7 @@ void describe(OptionTable& table, RegistrationOptions& options) {
   table.group("flow", options.flow);
   table.group("affine", options.affine);
   table.group("dense", options.dense);
+  table.group("vegetation", options.vegetation);
   table.group("cpd", options.cpd);
   table.group("vertical", options.vertical);
   table.group("evidence", options.evidence);

@@ -13,6 +13,7 @@
 #include "agricolmap/5_affine/estimate_affine.hpp"
 #include "agricolmap/6_refine/cpd.hpp"
 #include "agricolmap/6_refine/dense_refine.hpp"
+#include "agricolmap/6_refine/vegetation.hpp"
 #include "agricolmap/6_refine/vertical.hpp"
 #include "agricolmap/7_verdict/verdict.hpp"
 #include "agricolmap/core/options.hpp"
@@ -20,12 +21,13 @@
 namespace agricolmap {
 
 enum class AssociationKind { kCorrelation, kFlow };
-enum class RefineKind { kDense, kCpd, kNone };
+/// kDenseCpd: densely, then CPD where the vegetation can be told from the soil.
+enum class RefineKind { kDenseCpd, kDense, kCpd, kNone };
 
 struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
-  RefineKind refine = RefineKind::kDense;
+  RefineKind refine = RefineKind::kDenseCpd;
   PriorUncertainty prior;
   LevelOptions level;
   GridOptions grid;
@@ -34,6 +36,7 @@ struct RegistrationOptions {
   FlowAssociationOptions flow;
   AffineOptions affine;
   DenseRefineOptions dense;
+  VegetationOptions vegetation;
   CpdOptions cpd;
   VerticalOptions vertical;
   EvidenceOptions evidence;

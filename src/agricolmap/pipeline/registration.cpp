@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <optional>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -23,7 +22,7 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
   for (const Cloud* cloud : {&fixed, &moving}) {
     if (!cloud->hasColour()) {
       throw InputError(fmt::format(
-          "{}: has no colours; Excess Green needs them (use --geometry-only to register by height "
+          "{}: has no colours; Excess Green needs them (use --geometry_only to register by height "
           "alone)",
           cloud->name));
     }
@@ -175,17 +174,16 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
                        result.association.counts.end());
   // 6. Affine with two scales per placement (Eq. 3); 7. refinement of the best.
   const PoseRefinement refinement(result.fixed_map, result.moving_map, result.space, options);
-  const std::optional<RefinedPose> refined =
+  const RefineOutcome refined =
       refinement.choose(result.association.placements, times, result.counts);
-  if (!refined) {
-    result.verdict = rejectBecause(
-        "no placement of the moving map could be refined: the maps have "
-        "nothing coherent in common within the prior's limits");
+  if (!refined.best) {
+    result.verdict = rejectBecause(refined.failure);
     return result;
   }
-  result.pose = refined->pose;
-  result.overlap = refined->overlap;
-  result.correlation = refined->correlation;
+  result.pose = refined.best->pose;
+  const Fit fit = refinement.fit(result.pose);
+  result.overlap = fit.overlap;
+  result.correlation = fit.correlation;
   result.vertical = times.run("vertical", [&] {
     return fitVertical(result.fixed_map, result.moving_map, result.pose, options.vertical);
   });

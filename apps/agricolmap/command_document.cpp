@@ -1,0 +1,42 @@
+// agricolmap document-options: docs/options.md, from the same tables as the command line.
+#include <fmt/format.h>
+
+#include "agricolmap/config/markdown.hpp"
+#include "agricolmap/io/raster_import.hpp"
+#include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/simulate/simulation_options.hpp"
+#include "common.hpp"
+
+namespace agricolmap {
+namespace {
+
+template <typename Options>
+void printSection(const char* verb, const char* about) {
+  Options defaults;
+  fmt::print("\n## agricolmap {}\n\n{}\n\n{}", verb, about, toMarkdown(optionTable(defaults)));
+}
+
+ExitCode runDocument() {
+  fmt::print(
+      "# Options\n\n"
+      "<!-- Written by `agricolmap document-options`; a test compares. -->\n\n"
+      "Every option is a flag (`--grid.cell 0.02`) and, for `register` and `simulate`, a key of "
+      "the YAML\nfile given with `--config` (`grid:` and below it `cell: 0.02`). Flags win over "
+      "the file, the file over\nthe preset. `--dump-config` prints what is in force.\n");
+  printSection<RegistrationOptions>(
+      "register", "Defaults are those of `--preset default`; `--preset paper` has others.");
+  printSection<SimulationOptions>(
+      "simulate", "Defaults are those of the default crop; each `--crop` brings its own.");
+  printSection<ImportOptions>("import", "From an orthomosaic and a surface model to a cloud.");
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+CommandSlot addDocumentCommand(CLI::App& app, const Globals&) {
+  CLI::App* command = app.add_subcommand("document-options", "Print docs/options.md");
+  command->group("");  // for those who change options, not for those who set them
+  return {command, [] { return runDocument(); }};
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,161 @@
+// Times of the stages on one simulated pair of about 2 and 1 million points.
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "agricolmap/io/cloud_reader.hpp"
+#include "agricolmap/io/cloud_writer.hpp"
+#include "agricolmap/pipeline/refinement.hpp"
+#include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/simulate/simulate.hpp"
+
+namespace agricolmap {
+namespace {
+
+/// The pair, its files and what each stage starts from.
+class Scene {
+ public:
+  static const Scene& get() {
+    static const Scene scene;
+    return scene;
+  }
+  ~Scene() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  }
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  SimulatedPair pair;
+  RegistrationOptions options = preset("default");
+  Registration result;
+  std::filesystem::path folder;
+
+ private:
+  Scene() {
+    SimulationOptions simulation = cropPreset(Crop::kSoybean);
+    simulation.seed = 4242;
+    simulation.geotag.translation = 5.0;
+    simulation.geotag.heading_deg = 11.5;
+    simulation.geotag.scale = 0.3;
+    pair = simulatePair(simulation);
+    folder = std::filesystem::temp_directory_path() /
+             ("agricolmap_benchmark_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    writePly(folder / "uav.ply", pair.uav);
+    writePly(folder / "ugv.ply", pair.ugv);
+    StageTimes times;
+    result = registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+  }
+};
+
+void countPoints(benchmark::State& state, std::size_t points) {
+  state.counters["points"] = static_cast<double>(points);
+  state.SetItemsProcessed(static_cast<std::int64_t>(points) *
+                          static_cast<std::int64_t>(state.iterations()));
+}
+
+void readPly(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(readCloud(scene.folder / "uav.ply"));
+    benchmark::DoNotOptimize(readCloud(scene.folder / "ugv.ply"));
+  }
+  countPoints(state, scene.pair.uav.size() + scene.pair.ugv.size());
+}
+
+Box2 windowOf(const GridMap& map) {
+  const GridFrame& frame = map.frame;
+  return {frame.corner,
+          (frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows)).eval()};
+}
+
+void level(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        levelCloud(scene.pair.uav, Eigen::Affine3d::Identity(), scene.options.level));
+    benchmark::DoNotOptimize(
+        levelCloud(scene.pair.ugv, Eigen::Affine3d::Identity(), scene.options.level));
+  }
+  countPoints(state, scene.pair.uav.size() + scene.pair.ugv.size());
+}
+
+void grid(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  const Registration& r = scene.result;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(makeGridMap(scene.pair.uav, r.frames.levelled_from_fixed,
+                                         windowOf(r.fixed_map), scene.options.grid));
+    benchmark::DoNotOptimize(makeGridMap(scene.pair.ugv, r.frames.levelled_from_moving,
+                                         windowOf(r.moving_map), scene.options.grid));
+  }
+  countPoints(state, scene.pair.uav.size() + scene.pair.ugv.size());
+}
+
+void search(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  const Registration& r = scene.result;
+  CorrelationOptions options = scene.options.search;
+  options.signal = scene.options.signal;
+  const CorrelationSearch association(options);
+  for (auto _ : state) {
+    StageTimes times;
+    benchmark::DoNotOptimize(association.associate(r.fixed_map, r.moving_map, r.space, times));
+  }
+}
+
+void flow(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  const Registration& r = scene.result;
+  const FlowAssociation association(scene.options.flow);
+  for (auto _ : state) {
+    StageTimes times;
+    benchmark::DoNotOptimize(association.associate(r.fixed_map, r.moving_map, r.space, times));
+  }
+}
+
+void refine(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  const Registration& r = scene.result;
+  for (auto _ : state) {
+    StageTimes times;
+    std::vector<std::pair<std::string, double>> counts;
+    const PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
+    benchmark::DoNotOptimize(refinement.choose(r.association.placements, times, counts));
+  }
+}
+
+void verdict(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  const Registration& r = scene.result;
+  const PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        judge(refinement.evidence(r.pose), r.overlap, r.pose, r.space, scene.options.verdict));
+  }
+}
+
+void whole(benchmark::State& state) {
+  const Scene& scene = Scene::get();
+  for (auto _ : state) {
+    StageTimes times;
+    benchmark::DoNotOptimize(
+        registerClouds(scene.pair.uav, scene.pair.ugv, scene.pair.prior, scene.options, times));
+  }
+}
+
+BENCHMARK(readPly)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(level)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(grid)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(search)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(flow)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(refine)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(verdict)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(whole)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace agricolmap
+
+BENCHMARK_MAIN();

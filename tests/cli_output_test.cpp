@@ -1,0 +1,114 @@
+// Results appear whole or not at all, and replace nothing that nobody allowed to be replaced.
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "support/cli_fixture.hpp"
+
+namespace agricolmap::test {
+namespace {
+
+using OutputTest = CliTest;
+
+TEST_F(OutputTest, AFullFolderIsLeftAlone) {
+  const PairFiles files = pair();
+  write("out/notes.txt", "mine");
+  write("out/transform.txt", "older");
+  expectFailure({"register", files.uav(), files.ugv(), "-o", inFolder("out")}, 4,
+                {inFolder("out"), "--overwrite"});
+  EXPECT_EQ(contentOf(inFolder("out/transform.txt")), "older");
+  expectFailure({"simulate", "-o", inFolder("out")}, 4, {inFolder("out"), "--overwrite"});
+  const std::string cloud = write("cloud.ply", plyBytes(bumpySquare(3.0)));
+  const std::string unit = write("unit.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  expectFailure(
+      {"evaluate", unit, cloud, "--truth", unit, "-o", inFolder("out/notes.txt"), "--quiet"}, 4,
+      {inFolder("out/notes.txt"), "--overwrite"});
+  EXPECT_EQ(contentOf(inFolder("out/notes.txt")), "mine");
+}
+
+TEST_F(OutputTest, OverwriteReplacesResultsAndNothingElse) {
+  const PairFiles files = pair();
+  write("out/notes.txt", "mine");
+  write("out/transform.txt", "older");
+  write("out/overlay_after.png", "stale");
+  const ProgramResult result = runAgricolmap({"register", files.uav(), files.ugv(), "-o",
+                                              inFolder("out"), "--overwrite", "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // A picture of an earlier run would show another registration than the report.
+  EXPECT_EQ(entries("out"), (std::set<std::string>{"aligned.ply", "notes.txt", "registration.json",
+                                                   "transform.txt"}));
+  EXPECT_EQ(contentOf(inFolder("out/notes.txt")), "mine");
+  EXPECT_NE(contentOf(inFolder("out/transform.txt")), "older");
+}
+
+TEST_F(OutputTest, ARejectionRemovesTheResultOfAnEarlierRun) {
+  const PairFiles files = pair("other_field");
+  write("out/transform.txt", "older");
+  write("out/aligned.ply", "older");
+  const ProgramResult result = runAgricolmap({"register", files.uav(), files.ugv(), "-o",
+                                              inFolder("out"), "--overwrite", "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 10) << result.err;
+  EXPECT_EQ(entries("out"), (std::set<std::string>{"registration.json"}));
+}
+
+TEST_F(OutputTest, BelowARegularFile) {
+  const PairFiles files = pair();
+  const std::string file = write("file", "text");
+  expectFailure({"register", files.uav(), files.ugv(), "-o", file}, 4, {file});
+  expectFailure({"register", files.uav(), files.ugv(), "-o", file + "/out"}, 4, {file});
+  expectFailure({"simulate", "-o", file + "/out"}, 4, {file});
+}
+
+TEST_F(OutputTest, FullDisk) {
+  const PairFiles files = pair();
+  const std::string disk = inFolder("disk");
+  std::filesystem::create_directory(disk);
+  if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=1m") != 0) {
+    GTEST_SKIP() << "a small file system cannot be mounted here: " << std::strerror(errno);
+  }
+  struct Unmount {
+    const std::string& disk;
+    ~Unmount() { ::umount2(disk.c_str(), MNT_DETACH); }
+  } const unmount{disk};
+  for (const std::string& out : {disk, disk + "/out"}) {
+    expectFailure({"register", files.uav(), files.ugv(), "-o", out}, 4,
+                  {disk, "No space left on device"});
+    expectFailure({"register", files.uav(), files.ugv(), "-o", out, "--no-pictures"}, 4,
+                  {disk, "No space left on device"});
+  }
+  expectFailure({"simulate", "--field.width", "8", "--field.height", "8", "--ugv.length", "3", "-o",
+                 disk + "/pair"},
+                4, {disk, "No space left on device"});
+}
+
+TEST_F(OutputTest, AnInterruptLeavesNothing) {
+  const PairFiles files = pair();
+  // -v names the stages on stderr; the signal comes once the stage has begun.
+  for (const std::string stage : {"level", "refine", "pictures"}) {
+    const ProgramResult result = runAgricolmap(
+        {"register", files.uav(), files.ugv(), "-o", inFolder("deep/out"), "-v"}, ": " + stage);
+    EXPECT_EQ(result.exit_code, 130) << stage << "\n" << result.err;
+    EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
+    EXPECT_EQ(entries(), std::set<std::string>{}) << stage;
+  }
+  // What stood there before is as it was.
+  write("out/transform.txt", "older");
+  const ProgramResult result = runAgricolmap(
+      {"register", files.uav(), files.ugv(), "-o", inFolder("out"), "--overwrite", "-v"},
+      ": pictures");
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(entries(), (std::set<std::string>{"out", "out/transform.txt"}));
+  EXPECT_EQ(contentOf(inFolder("out/transform.txt")), "older");
+}
+
+TEST_F(OutputTest, SimulationCanBeInterrupted) {
+  const ProgramResult result =
+      runAgricolmap({"simulate", "-o", inFolder("pair"), "-v"}, ": simulate");
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(entries(), std::set<std::string>{});
+}
+
+}  // namespace
+}  // namespace agricolmap::test

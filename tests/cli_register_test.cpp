@@ -1,0 +1,154 @@
+// What `agricolmap register` does with clouds that it can use.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/cli_fixture.hpp"
+
+namespace agricolmap::test {
+namespace {
+
+using RegisterTest = CliTest;
+
+TEST_F(RegisterTest, FindsTheTruthAndWritesEveryFile) {
+  const PairFiles files = pair();
+  const ProgramResult result =
+      runAgricolmap({"register", files.uav(), files.ugv(), "-o", inFolder("out")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out.rfind("accepted", 0), 0U) << result.out;
+  EXPECT_EQ(entries("out"),
+            (std::set<std::string>{"aligned.ply", "blocks.png", "exg_maps.png", "flow.png",
+                                   "overlay_after.png", "overlay_before.png", "registration.json",
+                                   "transform.txt"}));
+  const nlohmann::json errors = errorsOf(inFolder("out/transform.txt"), files);
+  EXPECT_TRUE(errors.at("success").get<bool>()) << errors.dump();
+  EXPECT_LT(errors.at("rms_m").get<double>(), 0.03);
+  const nlohmann::json report = jsonOf(inFolder("out/registration.json"));
+  EXPECT_EQ(report.at("status"), "accepted");
+
+  // The aligned cloud is the moving cloud, moved by what transform.txt says.
+  const auto moving = pointsOfPly(contentOf(files.ugv()));
+  const auto aligned = pointsOfPly(contentOf(inFolder("out/aligned.ply")));
+  ASSERT_EQ(aligned.size(), moving.size());
+  const auto& matrix = report.at("transform").at("matrix");
+  for (const std::size_t i : {std::size_t{0}, moving.size() / 2, moving.size() - 1}) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      double expected = matrix[row][3].get<double>();
+      for (std::size_t col = 0; col < 3; ++col) {
+        expected += matrix[row][col].get<double>() * moving[i].xyz[col];
+      }
+      EXPECT_NEAR(aligned[i].xyz[row], expected, 1e-4);
+    }
+    EXPECT_EQ(aligned[i].rgb, moving[i].rgb);
+  }
+}
+
+TEST_F(RegisterTest, GivesTheSameBytesOnOneThreadAndTwo) {
+  const PairFiles files = pair();
+  for (const std::string threads : {"1", "2"}) {
+    const ProgramResult result =
+        runAgricolmap({"register", files.uav(), files.ugv(), "-o", inFolder("out" + threads),
+                       "--threads", threads, "--quiet"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out + result.err, "");
+  }
+  for (const char* name : {"transform.txt", "aligned.ply", "overlay_after.png", "flow.png"}) {
+    EXPECT_EQ(contentOf(inFolder("out1/") + name) == contentOf(inFolder("out2/") + name), true)
+        << name;
+  }
+}
+
+TEST_F(RegisterTest, TakesThePriorFromAFileOrFromOffsets) {
+  const PairFiles files = pair();
+  // Away from its offset.xyz a cloud stands where its coordinates say.
+  std::filesystem::copy_file(files.uav(), inFolder("uav.ply"));
+  std::filesystem::copy_file(files.ugv(), inFolder("ugv.ply"));
+  ASSERT_EQ(runAgricolmap({"register", inFolder("uav.ply"), inFolder("ugv.ply"), "--prior",
+                           files.prior(), "-o", inFolder("by_file"), "--no-pictures"})
+                .exit_code,
+            0);
+  EXPECT_EQ(jsonOf(inFolder("by_file/registration.json")).dump().find("offset.xyz"),
+            std::string::npos);
+  EXPECT_EQ(entries("by_file"),
+            (std::set<std::string>{"aligned.ply", "registration.json", "transform.txt"}));
+  EXPECT_TRUE(errorsOf(inFolder("by_file/transform.txt"), files).at("success").get<bool>());
+
+  // One offset per cloud, named after it, says the same.
+  write("uav.offset.xyz", contentOf(files.folder / "uav/offset.xyz"));
+  write("ugv.offset.xyz", contentOf(files.folder / "ugv/offset.xyz"));
+  ASSERT_EQ(runAgricolmap({"register", inFolder("uav.ply"), inFolder("ugv.ply"), "-o",
+                           inFolder("by_offset"), "--no-pictures"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(errorsOf(inFolder("by_offset/transform.txt"), files).at("success").get<bool>());
+}
+
+TEST_F(RegisterTest, TakesCoordinatesAsTheyStandWithoutAPrior) {
+  const PairFiles files = pair("georeferenced");
+  std::filesystem::copy_file(files.uav(), inFolder("uav.ply"));
+  std::filesystem::copy_file(files.ugv(), inFolder("ugv.ply"));
+  const ProgramResult result = runAgricolmap({"register", inFolder("uav.ply"), inFolder("ugv.ply"),
+                                              "-o", inFolder("out"), "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
+}
+
+TEST_F(RegisterTest, RejectsTheStripOfAnotherField) {
+  const PairFiles files = pair("other_field");
+  const ProgramResult result =
+      runAgricolmap({"register", files.uav(), files.ugv(), "-o", inFolder("out")});
+  EXPECT_EQ(result.exit_code, 10) << result.err;
+  EXPECT_EQ(result.out.rfind("rejected", 0), 0U) << result.out;
+  const std::set<std::string> written = entries("out");
+  EXPECT_TRUE(written.contains("registration.json"));
+  EXPECT_FALSE(written.contains("transform.txt"));
+  EXPECT_FALSE(written.contains("aligned.ply"));
+  const nlohmann::json report = jsonOf(inFolder("out/registration.json"));
+  EXPECT_EQ(report.at("status"), "rejected");
+  EXPECT_FALSE(report.at("reasons").empty());
+}
+
+TEST_F(RegisterTest, KeepsARejectedTransformOnRequest) {
+  const PairFiles files = pair("other_field");
+  const ProgramResult result = runAgricolmap({"register", files.uav(), files.ugv(), "-o",
+                                              inFolder("out"), "--no-pictures", "--keep-rejected"});
+  EXPECT_EQ(result.exit_code, 10) << result.err;
+  EXPECT_EQ(entries("out"),
+            (std::set<std::string>{"aligned.ply", "registration.json", "transform.txt"}));
+}
+
+TEST_F(RegisterTest, LeavesOutPointsThatAreNotFinite) {
+  const PairFiles files = pair();
+  std::vector<PlyPoint> points = pointsOfPly(contentOf(files.ugv()));
+  std::size_t spoilt = 0;
+  for (std::size_t i = 0; i < points.size(); i += 500, ++spoilt) {
+    points[i].xyz[i % 3] = (i / 500) % 2 == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                              : std::numeric_limits<double>::infinity();
+  }
+  const std::string ugv = write("ugv.ply", plyBytes(points));
+  const ProgramResult result =
+      runAgricolmap({"register", files.uav(), ugv, "--prior", files.prior(), "-o", inFolder("out"),
+                     "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find(ugv), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(std::to_string(spoilt) + " points"), std::string::npos) << result.err;
+  EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
+}
+
+TEST_F(RegisterTest, UsesHeightsAloneWhenAsked) {
+  const PairFiles files = pair();
+  const std::string ugv =
+      write("grey.ply", plyBytes(pointsOfPly(contentOf(files.ugv())), /*colours=*/false));
+  const ProgramResult result =
+      runAgricolmap({"register", files.uav(), ugv, "--prior", files.prior(), "--geometry_only",
+                     "-o", inFolder("out")});
+  // Heights of young beets may not be enough; an answer that is accepted must be right.
+  ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 10) << result.err;
+  if (result.exit_code == 0) {
+    EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
+  }
+}
+
+}  // namespace
+}  // namespace agricolmap::test

@@ -1,0 +1,20 @@
+// Running the program as a user does: arguments, exit code, what it says.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace agricolmap::test {
+
+struct ProgramResult {
+  int exit_code = -1;  ///< 128 + signal when a signal killed it
+  std::string out;
+  std::string err;
+};
+
+/// Runs agricolmap with standard input empty. With `interrupt_at` it gets SIGINT as soon as its
+/// stderr contains that text.
+ProgramResult runAgricolmap(const std::vector<std::string>& arguments,
+                            const std::string& interrupt_at = "");
+
+}  // namespace agricolmap::test
