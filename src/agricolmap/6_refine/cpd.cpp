@@ -149,7 +149,7 @@ CpdPose fromCentred(const CpdPose& pose, const CpdClouds& clouds) {
 /// offset and the height of 1 m.
 Eigen::VectorXd toVector(const CpdPose& pose, const CpdClouds& clouds) {
   Eigen::VectorXd vector(8);
-  for (int i = 0; i < 3; ++i) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
     vector.segment<2>(2 * i) = pose.plane * clouds.corners[static_cast<std::size_t>(i)];
   }
   vector(6) = pose.height_offset;
