@@ -52,7 +52,8 @@ void describe(OptionTable& table, CpdOptions& options) {
       "in kernel widths");
   table.number("start_weight", options.start_weight, 0.0, 10.0, "",
                "pull of the start at sigma_start beside that of the matches; fades with the width");
-  table.flag("weights", options.weights, "greener points count more");
+  table.flag("weights", options.weights,
+             "greener points count more (drawn to the sunny side of plants)");
   table.integer("max_points", options.max_points, 100, 10000000, "",
                 "points per cloud; more are merged to squares");
   table.integer("max_iterations", options.max_iterations, 1, 10000, "",
@@ -148,7 +149,7 @@ CpdPose fromCentred(const CpdPose& pose, const CpdClouds& clouds) {
 /// offset and the height of 1 m.
 Eigen::VectorXd toVector(const CpdPose& pose, const CpdClouds& clouds) {
   Eigen::VectorXd vector(8);
-  for (int i = 0; i < 3; ++i) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
     vector.segment<2>(2 * i) = pose.plane * clouds.corners[static_cast<std::size_t>(i)];
   }
   vector(6) = pose.height_offset;

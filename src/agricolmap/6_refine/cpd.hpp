@@ -42,10 +42,10 @@ struct CpdOptions {
   double decay = 0.6;           ///< most of σ that is left from one level to the next
   double sigma_height = 0.15;   ///< deviation of the height difference [m]; 0: heights unused
   bool vertical_scale = false;  ///< estimate a vertical scale beside the offset
-  double outlier_share = 0.4;   ///< w, prior share of moving points without a counterpart
+  double outlier_share = 0.5;   ///< w, prior share of moving points without a counterpart
   double border = 2.0;          ///< nearer than this to the edge of the moving map: no data [σ]
-  double start_weight = 0.05;   ///< pull of the start at sigma_start, per point; 0 at sigma_end
-  bool weights = true;          ///< greener points count more
+  double start_weight = 0.15;   ///< pull of the start at sigma_start, per point; 0 at sigma_end
+  bool weights = false;         ///< greener points count more; light then shifts the plants
   int max_points = 40000;       ///< per cloud; more are merged to squares
   int max_iterations = 50;      ///< at one σ
   double tolerance = 1e-4;      ///< motion of the strip's points that counts as standing still [m]

@@ -269,7 +269,10 @@ VegetationThreshold vegetationThreshold(const GridMap& map, const VegetationOpti
 Vegetation extractVegetation(const GridMap& map, const VegetationOptions& options) {
   Vegetation result;
   result.threshold = vegetationThreshold(map, options);
-  if (result.threshold.status != VegetationStatus::kOk) return result;
+  if (result.threshold.status != VegetationStatus::kOk &&
+      result.threshold.status != VegetationStatus::kClosedCanopy) {
+    return result;
+  }
   const double threshold = result.threshold.threshold;
   const double scale = 1.0 / (result.threshold.vegetation_mean - threshold);
   const Raster<float> margin = seenMargin(map);

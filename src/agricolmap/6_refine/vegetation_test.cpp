@@ -69,6 +69,18 @@ TEST(Vegetation, OnePopulationIsAStatus) {
             VegetationStatus::kTooFewCells);
 }
 
+TEST(Vegetation, AClosedCanopyGivesItsGreenerHalf) {
+  Random random(1);
+  const auto extract = [&](double mean) {
+    return extractVegetation(
+        makeMap(200, 200, [&](int, int) { return mean + random.normal(0.05); }), {});
+  };
+  const Vegetation canopy = extract(0.4);
+  EXPECT_EQ(canopy.threshold.status, VegetationStatus::kClosedCanopy);
+  EXPECT_NEAR(static_cast<double>(canopy.points.size()), 20000.0, 2000.0);
+  EXPECT_TRUE(extract(0.0).points.empty());
+}
+
 TEST(Vegetation, AHandfulOfGreenCellsIsNoVegetation) {
   Random random(1);
   const GridMap map = makeMap(200, 200, [&](int row, int col) {
