@@ -14,8 +14,8 @@ enum class Status { kAccepted, kRejected };
 const char* toString(Status status);
 
 struct VerdictOptions {
-  double min_uniqueness = 1.4;
-  double min_agreement = 0.5;
+  double min_uniqueness = 1.8;
+  double min_agreement = 0.55;
   double min_overlap = 0.4;
   double scale_margin = 0.05;
   double heading_margin_deg = 2.0;

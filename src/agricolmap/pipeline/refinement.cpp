@@ -69,7 +69,7 @@ RefineOutcome PoseRefinement::refineByPoints(
   const Vegetation fixed = extractVegetation(fixed_, options_.vegetation);
   const Vegetation moving = extractVegetation(moving_, options_.vegetation);
   for (const auto& [map, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
-    if (map->threshold.status != VegetationStatus::kOk) {
+    if (map->points.empty()) {
       return {std::nullopt, fmt::format("vegetation cannot be told from soil in the {} map: {}",
                                         name, describe(map->threshold.status))};
     }

@@ -17,6 +17,10 @@ namespace {
 // Beyond this ratio of areas "moving" and "fixed" were swapped, or one is in other units.
 constexpr double kMaxAreaRatio = 4.0;
 
+// The second attempt of the correlation search.
+constexpr double kFinerCell = 2.0 / 3.0;
+constexpr int kMoreClimbs = 3;
+
 void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options) {
   if (options.geometry_only) return;
   for (const Cloud* cloud : {&fixed, &moving}) {
@@ -150,35 +154,21 @@ void compose(const Cloud& fixed, const Cloud& moving, Registration& result) {
   result.has_transform = true;
 }
 
-}  // namespace
-
-Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                            const RegistrationOptions& chosen, StageTimes& times) {
-  checkOptions(chosen);
-  RegistrationOptions options = chosen;
-  requireColours(fixed, moving, options);
-  if (options.geometry_only) {
-    options.signal.term = DataTerm::kHeight;
-    options.flow.describe.term = DataTerm::kHeight;
-  }
-  Registration result;
-  // 1. Level (assumption 5: only the moving map's scale is in question).
-  result.frames =
-      times.run("level", [&] { return levelPair(fixed, moving, guess, options.level); });
-  // 2. Multimodal grid maps (Sec. III-A).
-  times.run("grid", [&] { gridPair(fixed, moving, options, result); });
+/// Stages 3 to 8 on gridded maps.
+void place(const PoseRefinement& refinement, const Association& association,
+           const RegistrationOptions& options, StageTimes& times, Registration& result) {
   // 3.–5. Data association: descriptors, flow and vote (Sec. III-B), or the correlation search.
   result.association =
-      makeAssociation(options)->associate(result.fixed_map, result.moving_map, result.space, times);
+      association.associate(result.fixed_map, result.moving_map, result.space, times);
   result.counts.insert(result.counts.end(), result.association.counts.begin(),
                        result.association.counts.end());
   // 6. Affine with two scales per placement (Eq. 3); 7. refinement of the best.
-  const PoseRefinement refinement(result.fixed_map, result.moving_map, result.space, options);
   const RefineOutcome refined =
       refinement.choose(result.association.placements, times, result.counts);
+  result.has_transform = refined.best.has_value();
   if (!refined.best) {
     result.verdict = rejectBecause(refined.failure);
-    return result;
+    return;
   }
   result.pose = refined.best->pose;
   const Fit fit = refinement.fit(result.pose);
@@ -196,7 +186,39 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   if (result.vertical.status != VerticalStatus::kOk) {
     result.verdict = rejectBecause("the heights of the two maps do not fit one another");
   }
-  compose(fixed, moving, result);
+}
+
+}  // namespace
+
+Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                            const RegistrationOptions& chosen, StageTimes& times) {
+  checkOptions(chosen);
+  RegistrationOptions options = chosen;
+  requireColours(fixed, moving, options);
+  if (options.geometry_only) {
+    options.signal.term = DataTerm::kHeight;
+    options.flow.describe.term = DataTerm::kHeight;
+  }
+  Registration result;
+  // 1. Level (assumption 5: only the moving map's scale is in question).
+  result.frames =
+      times.run("level", [&] { return levelPair(fixed, moving, guess, options.level); });
+  // 2. Multimodal grid maps (Sec. III-A).
+  times.run("grid", [&] { gridPair(fixed, moving, options, result); });
+  const PoseRefinement refinement(result.fixed_map, result.moving_map, result.space, options);
+  const std::vector<std::pair<std::string, double>> grid_counts = result.counts;
+  // What the search at its usual cell size does not find convincingly is looked for once more in
+  // finer cells: dearer, and needed where the canopy is closed and only leaves tell places apart.
+  const int attempts = options.association == AssociationKind::kCorrelation ? 2 : 1;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    result.counts = grid_counts;
+    result.counts.emplace_back("attempts", attempt + 1.0);
+    place(refinement, *makeAssociation(options), options, times, result);
+    if (result.verdict.status == Status::kAccepted) break;
+    options.search.cell *= kFinerCell;
+    options.search.climbs *= kMoreClimbs;
+  }
+  if (result.has_transform) compose(fixed, moving, result);
   return result;
 }
 
