@@ -99,8 +99,11 @@ class CoarseTask {
                  double deviation, std::vector<float>& sum, std::vector<Candidate>& best) const {
     const Eigen::Matrix2d linear = linearOf(hypothesis, space_.scale_axes);
     const double cell = filter_.frame().cell;
-    const int cols = filter_.fft().cols();
-    const int rows = filter_.fft().rows();
+    const int stride = filter_.fft().cols();
+    // Blocks whose middle would lie outside the map add nothing. Correlation is circular: without
+    // this a small map's true place appears a second time, one period of the transform away.
+    const int cols = filter_.frame().cols;
+    const int rows = filter_.frame().rows;
     std::vector<std::pair<int, int>> anchor(blocks_.size());
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Eigen::Vector2d at =
@@ -113,13 +116,13 @@ class CoarseTask {
       const int reach = window_.reach(dr);
       sum.assign(static_cast<std::size_t>(2 * reach + 1), 0.0F);
       for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        const int row = ((anchor[b].first + dr) % rows + rows) % rows;
+        const int row = anchor[b].first + dr;
+        if (row < 0 || row >= rows) continue;
         const int first = anchor[b].second - reach;
         const int from = std::clamp(-first, 0, 2 * reach + 1);
         const int to = std::clamp(cols - first, from, 2 * reach + 1);
-        // Blocks that would lie outside the map add nothing.
         const float* source =
-            surfaces[b].re.data() + static_cast<std::ptrdiff_t>(row) * cols + first;
+            surfaces[b].re.data() + static_cast<std::ptrdiff_t>(row) * stride + first;
         for (int i = from; i < to; ++i) sum[static_cast<std::size_t>(i)] += source[i];
       }
       const auto peak = std::max_element(sum.begin(), sum.end());
