@@ -78,8 +78,8 @@ ComplexRaster EvidenceMeter::wholeSurface(const Eigen::Affine2d& pose, Eigen::Ve
       makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
                    options_.filter.height_weight, [](const Eigen::Vector2d&) { return true; });
   ComplexRaster surface(filter_.fft().size());
-  ComplexRaster scratch(filter_.fft().size());
-  filter_.correlate(piece, surface, scratch);
+  MatchedFilter::Work work(filter_);
+  filter_.correlate(piece, surface, work);
   at = fixed_.frame.cellOf(pose * strip_.centre);
   return surface;
 }
@@ -117,8 +117,8 @@ BlockEvidence EvidenceMeter::placeBlock(const Block& block, const Eigen::Affine2
   usable = piece.filled >= kMinSeenShare * area && seen >= kMinSeenShare * looked;
   if (!usable) return evidence;
   ComplexRaster surface(filter_.fft().size());
-  ComplexRaster scratch(filter_.fft().size());
-  filter_.correlate(piece, surface, scratch);
+  MatchedFilter::Work work(filter_);
+  filter_.correlate(piece, surface, work);
   const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, options_.block_reach / cell,
                             [](const Eigen::Vector2d&) { return true; });
   evidence.offset = cell * (peak.at - at);
