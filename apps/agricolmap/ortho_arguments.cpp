@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "agricolmap/config/text.hpp"
@@ -93,8 +94,10 @@ SimulatedPair OrthoArguments::simulate(SimulationOptions& options) {
     options.field.row_heading_deg = row_heading_.front();
   } else if (options.field.random_row_heading) {
     options.field.random_row_heading = false;
-    options.field.row_heading_deg = findRowHeading(field) / kDegree;
-    spdlog::info("{}: the rows run at {:.1f} degrees", ortho_, options.field.row_heading_deg);
+    // To hundredths, as it is reported, so that the report makes the same pair.
+    options.field.row_heading_deg =
+        std::round(100.0 * findRowHeading(field) / kDegree) / 100.0 + 0.0;
+    spdlog::info("{}: the rows run at {:.2f} degrees", ortho_, options.field.row_heading_deg);
   }
   field.row_heading = options.field.row_heading_deg * kDegree;
   if (options.uav.gsd < field.gsd) {

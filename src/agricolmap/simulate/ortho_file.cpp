@@ -28,6 +28,7 @@ constexpr double kSameGsd = 0.01;         // relative
 constexpr double kMaxFieldPixels = 64e6;  // simulating takes about 60 bytes for each
 constexpr int kThumbnail = 2000;          // longer side [px]
 constexpr double kFull = 0.98;            // share of data that is as good as all
+constexpr double kGreen = 0.05;           // chromatic Excess Green of plants
 constexpr std::uint64_t kAttempts = 400;
 constexpr double kFarFromMedian = 100.0;  // heights that are not believed [m]
 
@@ -227,6 +228,20 @@ class DataShare {
   Raster<int> sums_;
 };
 
+/// Pixels that are greener than grey; all that have data where none is.
+std::vector<std::size_t> plantPixels(const RasterImage& image) {
+  std::vector<std::size_t> plants;
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < image.valid.size(); ++i) {
+    if (image.valid[i] == 0) continue;
+    all.push_back(i);
+    const Rgb rgb = image.colour[i];
+    const int sum = rgb.r + rgb.g + rgb.b;
+    if (3 * rgb.g - sum > kGreen * sum) plants.push_back(i);
+  }
+  return plants.empty() ? all : plants;
+}
+
 }  // namespace
 
 PixelWindow chooseWindow(const std::filesystem::path& ortho, const OrthoFileOptions& options,
@@ -243,17 +258,13 @@ PixelWindow chooseWindow(const std::filesystem::path& ortho, const OrthoFileOpti
 
   const int step = std::max(1, (std::max(shape.cols, shape.rows) + kThumbnail - 1) / kThumbnail);
   const RasterImage thumbnail = readRaster(ortho, options.raster, {.window = {}, .step = step});
-  std::vector<std::size_t> with_data;
-  for (std::size_t i = 0; i < thumbnail.valid.size(); ++i) {
-    if (thumbnail.valid[i] != 0) with_data.push_back(i);
-  }
+  const std::vector<std::size_t> plants = plantPixels(thumbnail);
   const DataShare share(thumbnail.valid);
   Random random = Random::stream(seed, 0x0E71);
   PixelWindow best = window;
   double best_share = -1.0;
   for (std::uint64_t attempt = 0; attempt < kAttempts && best_share < kFull; ++attempt) {
-    // Around a pixel with data.
-    const std::size_t middle = with_data[random.below(with_data.size())];
+    const std::size_t middle = plants[random.below(plants.size())];
     const auto cols = static_cast<std::size_t>(thumbnail.valid.cols());
     window.col = std::clamp(static_cast<int>(middle % cols) * step - window.cols / 2, 0,
                             shape.cols - window.cols);

@@ -24,9 +24,9 @@ struct OrthoFileOptions {
 };
 void describe(OptionTable& table, OrthoFileOptions& options);
 
-/// The part of the mosaic, at most `width` × `height` metres, that `seed` chooses: a random one
-/// with data in nearly all of it or, where none is found, the fullest of those tried. Looks at a
-/// thumbnail only. Throws InputError as readOrtho does.
+/// The part of the mosaic, at most `width` × `height` metres, that `seed` chooses: around a
+/// random green pixel, with data in nearly all of it or, where no such part is found, the fullest
+/// of those tried. Looks at a thumbnail only. Throws InputError as readOrtho does.
 PixelWindow chooseWindow(const std::filesystem::path& ortho, const OrthoFileOptions& options,
                          double width, double height, std::uint64_t seed);
 

@@ -215,6 +215,12 @@ TEST(ChooseWindow, TakesAllOfASmallMosaicAndDataOfALargeOne) {
     differs = differs || window.col != first.col;
   }
   EXPECT_TRUE(differs);
+  // Where the plants are.
+  sheet.value = [](int band, int col, int) { return col < 30 && band == 1 ? 140.0 : 90.0; };
+  const auto green = writeSheet(dir / "g.tif", sheet);
+  for (std::uint64_t seed = 1; seed < 10; ++seed) {
+    EXPECT_EQ(chooseWindow(green, {}, 2.0, 1.0, seed).col, 0);
+  }
   // Larger than the part with data: the fullest.
   const PixelWindow wide = chooseWindow(path, {}, 6.0, 4.0, 1);
   EXPECT_EQ(wide.cols, 300);
