@@ -24,8 +24,10 @@ ExitCode runDocument() {
       "Every option is a flag (`--grid.cell 0.02`) and, for `register` and `simulate`, a key of "
       "the YAML\nfile given with `--config` (`grid:` and below it `cell: 0.02`). Flags win over "
       "the file, the file over\nthe preset. `--dump-config` prints what is in force.\n");
-  printSection<RegistrationOptions>(
-      "register", "Defaults are those of `--preset default`; `--preset paper` has others.");
+  printSection<RegistrationOptions>("register",
+                                    "Defaults are those of `--preset default`; `--preset paper` "
+                                    "and `--preset paper-literal` have "
+                                    "others.");
   printSection<SimulationOptions>(
       "simulate", "Defaults are those of the default crop; each `--crop` brings its own.");
   printSection<OrthoFileOptions>(

@@ -173,7 +173,7 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   command->add_option("--prior", arguments->prior,
                       "Initial guess: 4x4 text, row-major, moving -> fixed file coordinates. "
                       "Default: offset.xyz beside each cloud, else coordinates as they stand");
-  command->add_option("--preset", arguments->preset, "default or paper [default]");
+  command->add_option("--preset", arguments->preset, "default, paper or paper-literal [default]");
   command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");
