@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -118,6 +119,7 @@ std::string OrthoArguments::provenance() const {
   for (const OptionField& field : table.fields()) {
     text += fmt::format(" --{} {}", field.path, optionText(field));
   }
+  std::replace(text.begin(), text.end(), '\n', ' ');  // of a file's name: still a comment
   return text + "\n# with the options below; heights and plants are the mosaic's, not field.*\n";
 }
 

@@ -42,7 +42,8 @@ struct QuietGdal {
 };
 
 [[noreturn]] void fail(const std::string& name, std::string_view what) {
-  throw InputError(fmt::format("{}: {}: {}", name, what, CPLGetLastErrorMsg()));
+  const std::string reason = CPLGetLastErrorMsg();
+  throw InputError(fmt::format("{}: {}{}{}", name, what, reason.empty() ? "" : ": ", reason));
 }
 
 GDALDatasetUniquePtr openRaster(const std::filesystem::path& path) {
