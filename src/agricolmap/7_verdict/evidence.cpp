@@ -39,10 +39,13 @@ template <typename Accept>
 Peak highest(const ComplexRaster& surface, const Fft2& fft, const GridFrame& frame,
              const Eigen::Vector2d& centre, double radius, const Accept& accept) {
   Peak peak;
-  const int r0 = std::max(0, static_cast<int>(std::floor(centre.y() - radius)));
-  const int r1 = std::min(frame.rows - 1, static_cast<int>(std::ceil(centre.y() + radius)));
-  const int c0 = std::max(0, static_cast<int>(std::floor(centre.x() - radius)));
-  const int c1 = std::min(frame.cols - 1, static_cast<int>(std::ceil(centre.x() + radius)));
+  const auto within = [](double at, int count) {
+    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
+  };
+  const int r0 = within(std::floor(centre.y() - radius), frame.rows);
+  const int r1 = within(std::ceil(centre.y() + radius), frame.rows);
+  const int c0 = within(std::floor(centre.x() - radius), frame.cols);
+  const int c1 = within(std::ceil(centre.x() + radius), frame.cols);
   for (int r = r0; r <= r1; ++r) {
     for (int c = c0; c <= c1; ++c) {
       const Eigen::Vector2d at(c, r);
