@@ -62,6 +62,17 @@ TEST_F(OptionsTest, MisuseIsNamed) {
                 {"grid.cell", "small"});
   expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--threads", "-3"}, 2,
                 {"--threads"});
+  for (const char* sigma : {"5", "5,11.5", "5,11.5,30,1", "a,b,c", "nothing"}) {
+    expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--prior-sigma", sigma}, 2,
+                  {"--prior-sigma", sigma, "T_M,HEADING_DEG,SCALE_PERCENT"});
+  }
+  for (const char* sigma : {"-5,11.5,30", "5,200,30", "5,11.5,90", "nan,1,1"}) {
+    expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--prior-sigma", sigma}, 2,
+                  {"--prior-sigma", sigma, "prior."});
+  }
+  expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--prior-sigma", "none",
+                 "--preset", "paper"},
+                2, {"flow", "--prior-sigma"});
   expectFailure({"register", cloud, "-o", inFolder("out")}, 2, {"MOVING"});
   expectFailure({"register", cloud, cloud}, 2, {"-o"});
   expectFailure({"simulate"}, 2, {"-o"});

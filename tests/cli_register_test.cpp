@@ -94,6 +94,29 @@ TEST_F(RegisterTest, TakesCoordinatesAsTheyStandWithoutAPrior) {
   EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
 }
 
+TEST_F(RegisterTest, FindsTheStripWithoutAnyPrior) {
+  const PairFiles files = pair();
+  // Away from their offsets the clouds stand in coordinates of their own, kilometres apart.
+  std::filesystem::copy_file(files.uav(), inFolder("uav.ply"));
+  std::filesystem::copy_file(files.ugv(), inFolder("ugv.ply"));
+  const ProgramResult result =
+      runAgricolmap({"register", inFolder("uav.ply"), inFolder("ugv.ply"), "--prior-sigma", "none",
+                     "-o", inFolder("out"), "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
+}
+
+TEST_F(RegisterTest, ThePriorsUncertaintyIsObeyed) {
+  const PairFiles files = pair();
+  const ProgramResult result = runAgricolmap({"register", files.uav(), files.ugv(), "--prior-sigma",
+                                              "2,4.5,10", "-o", inFolder("out"), "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  const nlohmann::json prior = jsonOf(inFolder("out/registration.json")).at("options").at("prior");
+  EXPECT_DOUBLE_EQ(prior.at("translation").get<double>(), 2.0);
+  EXPECT_DOUBLE_EQ(prior.at("heading_deg").get<double>(), 4.5);
+  EXPECT_DOUBLE_EQ(prior.at("scale").get<double>(), 0.1);
+}
+
 TEST_F(RegisterTest, RejectsTheStripOfAnotherField) {
   const PairFiles files = pair("other_field");
   const ProgramResult result =
