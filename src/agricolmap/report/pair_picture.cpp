@@ -62,7 +62,7 @@ Layout layoutOf(const CloudPhoto& fixed, const CloudPhoto& moving, int top, bool
           kSquare + 2 * (kGap + strip_height) + kLegendRoom};
 }
 
-void drawPhoto(Canvas& canvas, const View& view, const Raster<std::uint32_t>& photo) {
+void drawPhoto(PictureCanvas& canvas, const View& view, const Raster<std::uint32_t>& photo) {
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
     const std::uint32_t* row = photo.row(y - view.rect.y);
     for (int i = 0; i < view.rect.width; ++i) {
@@ -72,9 +72,9 @@ void drawPhoto(Canvas& canvas, const View& view, const Raster<std::uint32_t>& ph
 }
 
 /// A line that shows on plants and on soil, whatever their brightness.
-void drawOutline(Canvas& canvas, const View& view, std::vector<Eigen::Vector2d> corners,
+void drawOutline(PictureCanvas& canvas, const View& view, std::vector<Eigen::Vector2d> corners,
                  const Colour& colour, double width) {
-  const Canvas::Clip clip(canvas, view.rect);
+  const PictureCanvas::Clip clip(canvas, view.rect);
   for (Eigen::Vector2d& corner : corners) corner = view.pixel(corner);
   canvas.polygon(corners, {width + 2.0, hexColour(0x000000, 0.55), {}});
   canvas.polygon(corners, {width, colour, {}});
@@ -89,7 +89,7 @@ std::vector<Eigen::Vector2d> cornersOf(const View& view) {
           view.ground({rect.x, bottom})};
 }
 
-void drawFurniture(Canvas& canvas, const View& view, const std::string& label) {
+void drawFurniture(PictureCanvas& canvas, const View& view, const std::string& label) {
   drawPlate(canvas, view, label);
   drawScaleBar(canvas, view);
   drawNorth(canvas, view);
@@ -100,7 +100,7 @@ std::string describeCloud(const std::string& name, const Cloud& cloud, const Clo
                      1e-6 * static_cast<double>(cloud.size()), 1e3 * photo.spacing());
 }
 
-void drawPanels(Canvas& canvas, const Layout& layout, const CloudPhoto& fixed,
+void drawPanels(PictureCanvas& canvas, const Layout& layout, const CloudPhoto& fixed,
                 const CloudPhoto& moving, const PairPictureInfo& info) {
   struct Panel {
     const View& view;
@@ -125,7 +125,8 @@ void drawPanels(Canvas& canvas, const Layout& layout, const CloudPhoto& fixed,
   }
 }
 
-void drawMarks(Canvas& canvas, const Layout& layout, const CloudPhoto& moving, bool same_field) {
+void drawMarks(PictureCanvas& canvas, const Layout& layout, const CloudPhoto& moving,
+               bool same_field) {
   if (same_field) {
     drawOutline(canvas, layout.map, moving.outline(), hexColour(0xffffff), 2.0);
     drawOutline(canvas, layout.fixed_strip, moving.outline(), hexColour(0xffffff), 1.0);
@@ -138,7 +139,7 @@ void drawMarks(Canvas& canvas, const Layout& layout, const CloudPhoto& moving, b
   canvas.frame(layout.moving_close.rect, {2.0, palette::kInset, {}});
 }
 
-void drawFooter(Canvas& canvas, bool same_field) {
+void drawFooter(PictureCanvas& canvas, bool same_field) {
   std::vector<LegendItem> items;
   if (same_field) {
     items.push_back({LegendItem::Kind::kLine, hexColour(0xffffff), "where the strip belongs", {}});
