@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSurveyCell = 0.05;     // for spacing and outline [m]
 constexpr double kMaxSurveyCells = 4e3;  // along a side
-constexpr double kSparse = 0.02;         // of the usual count: cells with fewer are not covered
+constexpr double kSparse = 0.06;         // of the usual count: cells with fewer are not covered
 constexpr double kReachSpacings = 1.2;   // how far a point colours its surroundings
 constexpr float kTopReach = 0.6F;        // of that: how far it hides what lies lower
 constexpr float kLeafDepth = 0.015F;     // so far below the top the weight is a quarter [m]

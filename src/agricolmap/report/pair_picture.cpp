@@ -100,6 +100,20 @@ std::string describeCloud(const std::string& name, const Cloud& cloud, const Clo
                      1e-6 * static_cast<double>(cloud.size()), 1e3 * photo.spacing());
 }
 
+void drawMarks(PictureCanvas& canvas, const Layout& layout, const CloudPhoto& moving,
+               bool same_field) {
+  if (same_field) {
+    drawOutline(canvas, layout.map, moving.outline(), hexColour(0xffffff), 2.0);
+    drawOutline(canvas, layout.fixed_strip, moving.outline(), hexColour(0xffffff), 1.0);
+  }
+  const std::vector<Eigen::Vector2d> close = cornersOf(layout.fixed_close);
+  drawOutline(canvas, layout.map, close, palette::kInset, 1.0);
+  drawOutline(canvas, layout.fixed_strip, close, palette::kInset, 2.0);
+  drawOutline(canvas, layout.moving_strip, close, palette::kInset, 2.0);
+  canvas.frame(layout.fixed_close.rect, {2.0, palette::kInset, {}});
+  canvas.frame(layout.moving_close.rect, {2.0, palette::kInset, {}});
+}
+
 void drawPanels(PictureCanvas& canvas, const Layout& layout, const CloudPhoto& fixed,
                 const CloudPhoto& moving, const PairPictureInfo& info) {
   struct Panel {
@@ -121,22 +135,9 @@ void drawPanels(PictureCanvas& canvas, const Layout& layout, const CloudPhoto& f
               [&](std::size_t i) { photos[i] = panels[i].photo.shoot(panels[i].view); });
   for (std::size_t i = 0; i < panels.size(); ++i) {
     drawPhoto(canvas, panels[i].view, photos[i]);
-    drawFurniture(canvas, panels[i].view, panels[i].label);
   }
-}
-
-void drawMarks(PictureCanvas& canvas, const Layout& layout, const CloudPhoto& moving,
-               bool same_field) {
-  if (same_field) {
-    drawOutline(canvas, layout.map, moving.outline(), hexColour(0xffffff), 2.0);
-    drawOutline(canvas, layout.fixed_strip, moving.outline(), hexColour(0xffffff), 1.0);
-  }
-  const std::vector<Eigen::Vector2d> close = cornersOf(layout.fixed_close);
-  drawOutline(canvas, layout.map, close, palette::kInset, 1.0);
-  drawOutline(canvas, layout.fixed_strip, close, palette::kInset, 2.0);
-  drawOutline(canvas, layout.moving_strip, close, palette::kInset, 2.0);
-  canvas.frame(layout.fixed_close.rect, {2.0, palette::kInset, {}});
-  canvas.frame(layout.moving_close.rect, {2.0, palette::kInset, {}});
+  drawMarks(canvas, layout, moving, info.same_field);
+  for (const Panel& panel : panels) drawFurniture(canvas, panel.view, panel.label);
 }
 
 void drawFooter(PictureCanvas& canvas, bool same_field) {
@@ -170,7 +171,6 @@ void writePairPicture(const std::filesystem::path& path, const Cloud& fixed, con
             {Status::kAccepted, {}}, false);
   const Layout layout = layoutOf(fixed_photo, moving_photo, page.top, info.same_field);
   drawPanels(page.canvas, layout, fixed_photo, moving_photo, info);
-  drawMarks(page.canvas, layout, moving_photo, info.same_field);
   drawFooter(page.canvas, info.same_field);
   page.canvas.write(path);
 }

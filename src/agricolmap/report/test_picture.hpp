@@ -29,7 +29,7 @@ class PictureTest : public ::testing::Test {
 /// A PNG as cairo, an independent reader, sees it.
 class Picture {
  public:
-  explicit Picture(const fs::path& path)
+  explicit Picture(const std::filesystem::path& path)
       : surface_(cairo_image_surface_create_from_png(path.c_str()), cairo_surface_destroy) {}
   bool ok() const { return cairo_surface_status(surface_.get()) == CAIRO_STATUS_SUCCESS; }
   int width() const { return cairo_image_surface_get_width(surface_.get()); }
