@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -17,9 +18,16 @@ namespace {
 // Beyond this ratio of areas "moving" and "fixed" were swapped, or one is in other units.
 constexpr double kMaxAreaRatio = 4.0;
 
-// The second attempt of the correlation search.
-constexpr double kFinerCell = 2.0 / 3.0;
-constexpr int kMoreClimbs = 3;
+/// What a search that did not convince is followed by. Finer cells are dearer, and needed where the
+/// canopy is closed and only leaves tell places apart; then all headings and scales, should the
+/// rows have misled.
+struct Attempt {
+  double cell;  ///< of the options' cell
+  int climbs;   ///< times the options' climbs
+  bool rows_on_rows;
+};
+constexpr std::array<Attempt, 3> kAttempts = {
+    {{1.0, 1, true}, {2.0 / 3.0, 3, true}, {1.0, 2, false}}};
 
 void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options) {
   if (options.geometry_only) return;
@@ -182,6 +190,13 @@ void compose(const Cloud& fixed, const Cloud& moving, Registration& result) {
   result.has_transform = true;
 }
 
+double count(const std::vector<std::pair<std::string, double>>& counts, std::string_view name) {
+  for (const auto& [key, value] : counts) {
+    if (key == name) return value;
+  }
+  return 0.0;
+}
+
 /// Stages 3 to 8 on gridded maps.
 void place(const PoseRefinement& refinement, const Association& association,
            const RegistrationOptions& options, StageTimes& times, Registration& result) {
@@ -242,16 +257,20 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   times.run("grid", [&] { gridPair(fixed, moving, options, result); });
   const PoseRefinement refinement(result.fixed_map, result.moving_map, result.space, options);
   const std::vector<std::pair<std::string, double>> grid_counts = result.counts;
-  // What the search at its usual cell size does not find convincingly is looked for once more in
-  // finer cells: dearer, and needed where the canopy is closed and only leaves tell places apart.
-  const int attempts = options.association == AssociationKind::kCorrelation ? 2 : 1;
-  for (int attempt = 0; attempt < attempts; ++attempt) {
+  int tried = 0;
+  for (const Attempt& attempt : kAttempts) {
+    const bool rows = options.search.rows_on_rows && attempt.rows_on_rows;
+    // Nothing new when the rows did not restrict the search before.
+    if (tried > 0 && !attempt.rows_on_rows && count(result.counts, "rows_on_rows") < 1.0) break;
+    RegistrationOptions now = options;
+    now.search.cell *= attempt.cell;
+    now.search.climbs *= attempt.climbs;
+    now.search.rows_on_rows = rows;
     result.counts = grid_counts;
-    result.counts.emplace_back("attempts", attempt + 1.0);
-    place(refinement, *makeAssociation(options), options, times, result);
+    result.counts.emplace_back("attempts", ++tried);
+    place(refinement, *makeAssociation(now), now, times, result);
     if (result.verdict.status == Status::kAccepted) break;
-    options.search.cell *= kFinerCell;
-    options.search.climbs *= kMoreClimbs;
+    if (options.association != AssociationKind::kCorrelation) break;
   }
   if (result.has_transform) compose(fixed, moving, result);
   return result;

@@ -7,6 +7,7 @@
 #include "agricolmap/4_associate/correlate/block_search.hpp"
 #include "agricolmap/4_associate/correlate/hypotheses.hpp"
 #include "agricolmap/4_associate/correlate/polish.hpp"
+#include "agricolmap/4_associate/correlate/row_waves.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
@@ -20,6 +21,12 @@ void describe(OptionTable& table, CorrelationOptions& options) {
                "side of the blocks that the moving map is cut into");
   table.integer("max_blocks", options.max_blocks, 1, 1000, "",
                 "at most this many blocks, the most textured ones, take part");
+  table.flag("rows_on_rows", options.rows_on_rows,
+             "only headings and scales that lay the rows of one map on those of the other; all, "
+             "when that finds nothing convincing");
+  table.number("max_work", options.max_work, 1.0, 1e9, "1e6 cells",
+               "limit of the fixed map's cells times correlations; beyond it the cells are made "
+               "coarser, up to 0.25 m");
   table.integer("peaks", options.peaks, 1, 10000, "",
                 "places in the map at which the finer headings and scales around a coarse one are "
                 "looked at");
@@ -36,6 +43,18 @@ void describe(OptionTable& table, CorrelationOptions& options) {
 }
 
 namespace {
+
+/// The strongest waves of each map that are laid on one another.
+constexpr int kWaves = 2;
+/// A strip of four rows tells their distance to a tenth.
+constexpr WaveTolerance kWaveTolerance = {.along = 0.12, .across = 0.08};
+/// Power over the mean below which a peak of the spectrum may be chance: thousands of frequencies
+/// have their highest at 9 or 10.
+constexpr double kMinWave = 12.0;
+/// Cells grow by this until the work is within its limit.
+constexpr double kCoarser = 1.2;
+/// And no further than this [m]: then plants are no longer seen.
+constexpr double kCoarsestCell = 0.25;
 
 /// Index of the coarse hypothesis that moves a block's points most nearly as `fine` does.
 std::size_t nearestCoarse(const Hypothesis& fine, const std::vector<Hypothesis>& coarse,
@@ -54,6 +73,31 @@ std::size_t nearestCoarse(const Hypothesis& fine, const std::vector<Hypothesis>&
   return best;
 }
 
+/// What is tried: coarse hypotheses, each with the finer ones that are nearest to it.
+struct Plan {
+  std::vector<Hypothesis> coarse;
+  std::vector<std::vector<Hypothesis>> members;
+  std::size_t fine = 0;
+};
+
+Plan planOver(const std::vector<Hypothesis>& coarse, const std::vector<Hypothesis>& fine,
+              const Eigen::Matrix3d& block_metric) {
+  std::vector<std::size_t> nearest(fine.size());
+  parallelFor(
+      fine.size(),
+      [&](std::size_t i) { nearest[i] = nearestCoarse(fine[i], coarse, block_metric); }, 256);
+  std::vector<std::vector<Hypothesis>> members(coarse.size());
+  for (std::size_t i = 0; i < fine.size(); ++i) members[nearest[i]].push_back(fine[i]);
+  Plan plan;
+  plan.fine = fine.size();
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    if (members[i].empty()) continue;
+    plan.coarse.push_back(coarse[i]);
+    plan.members.push_back(std::move(members[i]));
+  }
+  return plan;
+}
+
 std::vector<Block> texturedBlocks(std::vector<Block> blocks, int most) {
   const auto count = std::min(blocks.size(), static_cast<std::size_t>(most));
   std::stable_sort(blocks.begin(), blocks.end(),
@@ -68,54 +112,91 @@ CorrelationSearch::CorrelationSearch(const CorrelationOptions& options) : option
   checkOptions(options);
 }
 
+/// The maps and the plan at one cell size.
+struct CorrelationSearch::Setup {
+  SignalMap fixed;
+  SignalMap moving;
+  StripFrame strip;
+  std::vector<Block> blocks;
+  Eigen::Matrix3d strip_metric;
+  Plan plan;
+  bool by_rows = false;  ///< only rows on rows
+
+  /// Cells of the fixed map times correlations.
+  double work() const {
+    return static_cast<double>(fixed.weight.size()) *
+           static_cast<double>(plan.coarse.size() * blocks.size());
+  }
+};
+
+CorrelationSearch::Setup CorrelationSearch::setUp(const GridMap& fixed, const GridMap& moving,
+                                                  const SearchSpace& space, const RowWaves& waves,
+                                                  double cell) const {
+  const int factor = std::max(1, static_cast<int>(std::lround(cell / fixed.frame.cell)));
+  Setup setup;
+  setup.fixed = makeSignalMap(fixed, factor, options_.signal);
+  setup.moving = makeSignalMap(moving, factor, options_.signal);
+  setup.strip = stripFrame(setup.moving);
+  setup.blocks =
+      texturedBlocks(cutBlocks(setup.moving, setup.strip, options_.block), options_.max_blocks);
+  const StripFrame& strip = setup.strip;
+  const Block& block = setup.blocks.front();
+  const Eigen::Matrix3d block_metric =
+      displacementMetric(strip.axes, 0.5 * (block.high - block.low), space.scale_axes);
+  setup.strip_metric = displacementMetric(strip.axes, strip.half_extent, space.scale_axes);
+  const double radius = options_.tolerance * setup.fixed.frame.cell;
+  const auto coarse = coverSpace(space.uncertainty, block_metric, radius);
+  auto fine = coverSpace(space.uncertainty, setup.strip_metric, radius);
+  auto by_rows = alongWaves(fine, waves.moving, waves.fixed, space.scale_axes, kWaveTolerance);
+  setup.by_rows = !by_rows.empty();
+  setup.plan = planOver(coarse, setup.by_rows ? by_rows : fine, block_metric);
+  return setup;
+}
+
 AssociationResult CorrelationSearch::associate(const GridMap& fixed, const GridMap& moving,
                                                const SearchSpace& space, StageTimes& times) const {
-  return times.run("search", [&] {
-    const int factor = std::max(1, static_cast<int>(std::lround(options_.cell / fixed.frame.cell)));
-    const SignalMap fixed_signal = makeSignalMap(fixed, factor, options_.signal);
-    const SignalMap moving_signal = makeSignalMap(moving, factor, options_.signal);
-    const double cell = fixed_signal.frame.cell;
-    const StripFrame strip = stripFrame(moving_signal);
-    const std::vector<Block> blocks =
-        texturedBlocks(cutBlocks(moving_signal, strip, options_.block), options_.max_blocks);
-    const MatchedFilter filter(fixed_signal, options_.filter);
+  return times.run("search", [&] { return search(fixed, moving, space); });
+}
 
-    const Eigen::Vector2d block_half = 0.5 * (blocks.front().high - blocks.front().low);
-    const Eigen::Matrix3d block_metric =
-        displacementMetric(strip.axes, block_half, space.scale_axes);
-    const Eigen::Matrix3d strip_metric =
-        displacementMetric(strip.axes, strip.half_extent, space.scale_axes);
-    const double radius = options_.tolerance * cell;
-    const auto coarse = coverSpace(space.uncertainty, block_metric, radius);
-    const auto fine = coverSpace(space.uncertainty, strip_metric, radius);
-    std::vector<std::vector<Hypothesis>> members(coarse.size());
-    for (const Hypothesis& h : fine) members[nearestCoarse(h, coarse, block_metric)].push_back(h);
-
-    const BlockSearch search(moving_signal, filter, space, strip, blocks, options_.peaks,
-                             options_.min_inside);
-    std::vector<std::vector<Candidate>> found(coarse.size());
-    parallelFor(coarse.size(), [&](std::size_t i) {
-      if (!members[i].empty()) found[i] = search.run(coarse[i], members[i]);
-    });
-
-    std::vector<Candidate> all;
-    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-    std::vector<Candidate> kept =
-        distinctCandidates(std::move(all), options_.climbs, options_.separation, strip, space);
-    const Polisher polisher(moving_signal, filter, space, strip_metric);
-    parallelFor(kept.size(), [&](std::size_t i) { kept[i] = polisher.improve(kept[i]); });
-    kept =
-        distinctCandidates(std::move(kept), options_.candidates, options_.separation, strip, space);
-    AssociationResult result;
-    for (const Candidate& candidate : kept) {
-      result.placements.push_back(placementOf(candidate, strip, space));
-    }
-    result.counts = {{"hypotheses", static_cast<double>(fine.size())},
-                     {"correlations", static_cast<double>(coarse.size() * blocks.size())},
-                     {"blocks", static_cast<double>(blocks.size())},
-                     {"placements", static_cast<double>(kept.size())}};
-    return result;
-  });
+AssociationResult CorrelationSearch::search(const GridMap& fixed, const GridMap& moving,
+                                            const SearchSpace& space) const {
+  RowWaves waves;
+  if (options_.rows_on_rows) {
+    waves.fixed = strongestWaves(fixed, options_.signal, kWaves, kMinWave);
+    waves.moving = strongestWaves(moving, options_.signal, kWaves, kMinWave);
+  }
+  double cell = options_.cell;
+  Setup setup = setUp(fixed, moving, space, waves, cell);
+  while (setup.work() > options_.max_work * 1e6 && cell * kCoarser <= kCoarsestCell) {
+    cell *= kCoarser;
+    setup = setUp(fixed, moving, space, waves, cell);
+  }
+  const MatchedFilter filter(setup.fixed, options_.filter);
+  const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, options_.peaks,
+                           options_.min_inside);
+  const Plan& plan = setup.plan;
+  std::vector<std::vector<Candidate>> found(plan.coarse.size());
+  parallelFor(plan.coarse.size(),
+              [&](std::size_t i) { found[i] = search.run(plan.coarse[i], plan.members[i]); });
+  std::vector<Candidate> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  std::vector<Candidate> kept =
+      distinctCandidates(std::move(all), options_.climbs, options_.separation, setup.strip, space);
+  const Polisher polisher(setup.moving, filter, space, setup.strip_metric);
+  parallelFor(kept.size(), [&](std::size_t i) { kept[i] = polisher.improve(kept[i]); });
+  kept = distinctCandidates(std::move(kept), options_.candidates, options_.separation, setup.strip,
+                            space);
+  AssociationResult result;
+  for (const Candidate& candidate : kept) {
+    result.placements.push_back(placementOf(candidate, setup.strip, space));
+  }
+  result.counts = {{"hypotheses", static_cast<double>(plan.fine)},
+                   {"correlations", static_cast<double>(plan.coarse.size() * setup.blocks.size())},
+                   {"rows_on_rows", setup.by_rows ? 1.0 : 0.0},
+                   {"search_cell_m", setup.fixed.frame.cell},
+                   {"blocks", static_cast<double>(setup.blocks.size())},
+                   {"placements", static_cast<double>(kept.size())}};
+  return result;
 }
 
 }  // namespace agricolmap

@@ -6,14 +6,19 @@
 
 #include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/4_associate/correlate/matched_filter.hpp"
+#include "agricolmap/4_associate/correlate/row_waves.hpp"
 
 namespace agricolmap {
 
 struct CorrelationOptions {
-  double cell = 0.12;       ///< cell of the search, rounded to whole grid cells [m]
-  double tolerance = 0.5;   ///< RMS displacement that hypotheses may leave [cells]
-  double block = 2.2;       ///< side of the blocks the moving map is cut into [m]
+  double cell = 0.12;      ///< cell of the search, rounded to whole grid cells [m]
+  double tolerance = 0.5;  ///< RMS displacement that hypotheses may leave [cells]
+  double block = 2.2;      ///< side of the blocks the moving map is cut into [m]
+  /// Only headings and scales that lay the strongest waves of one map (rows, plants along them) on
+  /// those of the other.
+  bool rows_on_rows = true;
   int max_blocks = 10;      ///< of the most textured ones
+  double max_work = 500.0;  ///< limit of cells times correlations [10⁶], else coarser cells
   int peaks = 16;           ///< places looked at more closely, per coarse hypothesis
   double min_inside = 0.4;  ///< least share of the blocks inside the fixed map
   int climbs = 64;          ///< placements of the lattice from which the score is climbed
@@ -31,6 +36,16 @@ class CorrelationSearch : public Association {
                               StageTimes& times) const override;
 
  private:
+  struct Setup;
+  struct RowWaves {
+    std::vector<Wave> moving;
+    std::vector<Wave> fixed;
+  };
+  Setup setUp(const GridMap& fixed, const GridMap& moving, const SearchSpace& space,
+              const RowWaves& waves, double cell) const;
+  AssociationResult search(const GridMap& fixed, const GridMap& moving,
+                           const SearchSpace& space) const;
+
   CorrelationOptions options_;
 };
 
