@@ -127,7 +127,8 @@ void drawPanels(PictureCanvas& canvas, const Layout& layout, const CloudPhoto& f
       {layout.map, fixed, fmt::format("{}: whole map", info.fixed_name)},
       {layout.fixed_close, fixed, fmt::format("{}: {}", info.fixed_name, square)},
       {layout.moving_close, moving, fmt::format("{}: {}{}", info.moving_name, square, elsewhere)},
-      {layout.fixed_strip, fixed, fmt::format("{}: the strip's place", info.fixed_name)},
+      {layout.fixed_strip, fixed,
+       fmt::format("{}: {}the strip's place", info.fixed_name, info.same_field ? "" : "not ")},
       {layout.moving_strip, moving, fmt::format("{}: the strip{}", info.moving_name, elsewhere)},
   }};
   std::array<Raster<std::uint32_t>, 5> photos;
