@@ -110,5 +110,22 @@ TEST_F(OutputTest, SimulationCanBeInterrupted) {
   EXPECT_EQ(entries(), std::set<std::string>{});
 }
 
+TEST_F(OutputTest, SimulationDrawsWhatItMade) {
+  // The shared pairs were made without further flags.
+  for (const std::string kind : {"same_field", "other_field"}) {
+    const std::string png = contentOf(pair(kind).folder / "pair.png");
+    EXPECT_EQ(png.substr(0, 4), "\x89PNG") << kind;
+    EXPECT_GT(png.size(), 100000U) << kind;
+  }
+  // A picture of an earlier pair does not stay beside a later one.
+  write("pair/pair.png", "older");
+  const std::vector<std::string> small = {
+      "simulate",      "--field.width", "8",  "--field.height", "8", "--ugv.length", "3",
+      "--no-pictures", "--overwrite",   "-o", inFolder("pair")};
+  ASSERT_EQ(runAgricolmap(small).exit_code, 0);
+  EXPECT_EQ(entries("pair").count("pair.png"), 0U);
+  EXPECT_EQ(entries("pair").count("truth.txt"), 1U);
+}
+
 }  // namespace
 }  // namespace agricolmap::test

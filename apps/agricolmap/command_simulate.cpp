@@ -4,12 +4,14 @@
 
 #include <memory>
 
+#include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/io/cloud_writer.hpp"
 #include "agricolmap/io/file_sink.hpp"
 #include "agricolmap/io/matrix_file.hpp"
 #include "agricolmap/io/offset_file.hpp"
 #include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/report/pair_picture.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
@@ -18,10 +20,13 @@
 namespace agricolmap {
 namespace {
 
+constexpr const char* kPicture = "pair.png";
+
 struct SimulateArguments {
   std::string output;
   std::string config;
   bool dump_config = false;
+  bool no_pictures = false;
   OptionFlags flags;
   OrthoArguments ortho;
 };
@@ -52,6 +57,27 @@ Cloud truthCloud(const SimulatedPair& pair) {
   return cloud;
 }
 
+void writeClouds(const StagedOutput& output, const SimulatedPair& pair) {
+  writePly(output.path("uav/point_cloud.ply"), pair.uav);
+  writePly(output.path("ugv/point_cloud.ply"), pair.ugv);
+  // The UAV's file is the world; the UGV's geotag is what the initial guess knows.
+  writeOffset(output.path("uav/offset.xyz"), Eigen::Affine3d::Identity());
+  writeOffset(output.path("ugv/offset.xyz"), pair.prior);
+  writeMatrix(output.path("prior.txt"), pair.prior, "initial guess, UGV file -> UAV file");
+  writeMatrix(output.path("truth.txt"), pair.best_affine,
+              "best affine, UGV file -> UAV file; not exact where the strip drifts");
+  writePly(output.path("truth_points.ply"), truthCloud(pair));
+}
+
+void writePicture(const StagedOutput& output, const SimulatedPair& pair, const std::string& field,
+                  int seed) {
+  PairPictureInfo info;
+  info.title = fmt::format("Simulated pair: {}, seed {}", field, seed);
+  if (!pair.overlaps) info.title += ", of different fields";
+  info.same_field = pair.overlaps;
+  writePairPicture(output.path(kPicture), pair.uav, pair.ugv, pair.best_affine, info);
+}
+
 ExitCode runSimulate(SimulateArguments& arguments, const Globals& globals) {
   SimulationOptions options = chosenOptions(arguments, globals);
   const bool from_ortho = arguments.ortho.given(arguments.flags);
@@ -66,18 +92,16 @@ ExitCode runSimulate(SimulateArguments& arguments, const Globals& globals) {
   progress.step("simulate");
   const SimulatedPair pair = from_ortho ? arguments.ortho.simulate(options) : simulatePair(options);
   progress.step("write");
-  writePly(output.path("uav/point_cloud.ply"), pair.uav);
-  writePly(output.path("ugv/point_cloud.ply"), pair.ugv);
-  // The UAV's file is the world; the UGV's geotag is what the initial guess knows.
-  writeOffset(output.path("uav/offset.xyz"), Eigen::Affine3d::Identity());
-  writeOffset(output.path("ugv/offset.xyz"), pair.prior);
-  writeMatrix(output.path("prior.txt"), pair.prior, "initial guess, UGV file -> UAV file");
-  writeMatrix(output.path("truth.txt"), pair.best_affine,
-              "best affine, UGV file -> UAV file; not exact where the strip drifts");
-  writePly(output.path("truth_points.ply"), truthCloud(pair));
+  writeClouds(output, pair);
   writeText(output.path("simulation.yaml"),
             (from_ortho ? arguments.ortho.provenance() : "") + dumpYaml(table));
-  output.commit();
+  if (!arguments.no_pictures) {
+    progress.step("picture");
+    writePicture(output, pair,
+                 from_ortho ? arguments.ortho.fileName() : optionText(*table.find("crop")),
+                 options.seed);
+  }
+  output.commit({kPicture});
   if (!globals.quiet) {
     fmt::print("{}: UAV {} points, UGV {} points{}\n", arguments.output, pair.uav.size(),
                pair.ugv.size(), pair.overlaps ? "" : ", from different fields");
@@ -97,6 +121,7 @@ CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals) {
   command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");
+  command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG picture");
   arguments->ortho.addTo(*command);
   SimulationOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the simulator", {"seed"});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ class OrthoArguments {
   bool given(const OptionFlags& flags) const;
   /// Reads the mosaic and simulates. Puts what was found or decided into `options`.
   SimulatedPair simulate(SimulationOptions& options);
+  /// The mosaic's, without its folder.
+  std::string fileName() const { return std::filesystem::path(ortho_).filename(); }
   /// Comment lines that say what the pair was made from; after simulate().
   std::string provenance() const;
 

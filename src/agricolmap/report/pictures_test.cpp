@@ -1,21 +1,17 @@
 #include "agricolmap/report/pictures.hpp"
 
-#include <cairo.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstring>
 #include <fstream>
-#include <functional>
-#include <memory>
 #include <sstream>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/report/canvas.hpp"
 #include "agricolmap/report/map_layer.hpp"
 #include "agricolmap/report/outline.hpp"
+#include "agricolmap/report/picture_canvas.hpp"
 #include "agricolmap/report/png_file.hpp"
+#include "agricolmap/report/test_picture.hpp"
 #include "agricolmap/report/test_registration.hpp"
 #include "agricolmap/report/utf8.hpp"
 
@@ -24,51 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test, removed afterwards.
-class Pictures : public ::testing::Test {
- protected:
-  void SetUp() override {
-    dir_ = fs::temp_directory_path() /
-           ("agricolmap_pictures_" + std::to_string(getpid()) + "_" +
-            ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(dir_);
-  }
-  void TearDown() override { fs::remove_all(dir_); }
-
-  fs::path dir_;
-};
-
-/// A PNG as cairo, an independent reader, sees it.
-class Picture {
- public:
-  explicit Picture(const fs::path& path)
-      : surface_(cairo_image_surface_create_from_png(path.c_str()), cairo_surface_destroy) {}
-  bool ok() const { return cairo_surface_status(surface_.get()) == CAIRO_STATUS_SUCCESS; }
-  int width() const { return cairo_image_surface_get_width(surface_.get()); }
-  int height() const { return cairo_image_surface_get_height(surface_.get()); }
-  std::uint32_t pixel(int x, int y) const {
-    std::uint32_t value = 0;
-    std::memcpy(
-        &value,
-        cairo_image_surface_get_data(surface_.get()) +
-            static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(surface_.get()) + 4 * x,
-        4);
-    return value & 0xFFFFFFU;
-  }
-  double share(const std::function<bool(int r, int g, int b)>& is) const {
-    double count = 0.0;
-    for (int y = 0; y < height(); ++y) {
-      for (int x = 0; x < width(); ++x) {
-        const std::uint32_t p = pixel(x, y);
-        if (is((p >> 16) & 255, (p >> 8) & 255, p & 255)) count += 1.0;
-      }
-    }
-    return count / (static_cast<double>(width()) * height());
-  }
-
- private:
-  std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_;
-};
+using testing::Picture;
+class Pictures : public testing::PictureTest {};
 
 bool isFringe(int r, int g, int b) { return std::abs(r - g) > 90 && std::abs(r - b) < 12; }
 bool isBannerRed(int r, int g, int b) { return r == 0xC6 && g == 0x28 && b == 0x28; }
@@ -197,7 +150,7 @@ TEST_F(Pictures, FailuresToWriteAreOutputErrors) {
 }
 
 TEST_F(Pictures, PngKeepsEveryPixel) {
-  Canvas canvas(37, 11, hexColour(0x123456));
+  PictureCanvas canvas(37, 11, hexColour(0x123456));
   canvas.paint({3, 2, 30, 5}, [](int y, std::uint32_t* row) {
     for (int x = 0; x < 30; ++x) row[x] = static_cast<std::uint32_t>(0x010203 * (x + y));
   });
