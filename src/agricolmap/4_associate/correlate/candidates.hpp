@@ -14,6 +14,9 @@ struct Candidate {
   Hypothesis hypothesis;
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< of the search space's centre [m]
   double score = 0.0;                               ///< in deviations of chance; larger is better
+  /// What chance gives a sum over all cells of the moving map under this hypothesis (of the map's
+  /// whitened values times the strip's): rows that lie on rows make it larger.
+  double deviation = 1.0;
 };
 
 /// Where a candidate puts a point of the moving map.

@@ -118,6 +118,7 @@ struct CorrelationSearch::Setup {
   SignalMap moving;
   StripFrame strip;
   std::vector<Block> blocks;
+  double energy = 0.0;  ///< of all blocks, `blocks` or not
   Eigen::Matrix3d strip_metric;
   Plan plan;
   bool by_rows = false;  ///< only rows on rows
@@ -172,8 +173,8 @@ AssociationResult CorrelationSearch::search(const GridMap& fixed, const GridMap&
     setup = setUp(fixed, moving, space, waves, cell);
   }
   const MatchedFilter filter(setup.fixed, options_.filter);
-  const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, options_.peaks,
-                           options_.min_inside);
+  const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, setup.energy,
+                           options_.peaks, options_.min_inside);
   const Plan& plan = setup.plan;
   std::vector<std::vector<Candidate>> found(plan.coarse.size());
   parallelFor(plan.coarse.size(),
@@ -182,7 +183,7 @@ AssociationResult CorrelationSearch::search(const GridMap& fixed, const GridMap&
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   std::vector<Candidate> kept =
       distinctCandidates(std::move(all), options_.climbs, options_.separation, setup.strip, space);
-  const Polisher polisher(setup.moving, filter, space, setup.strip_metric);
+  const Polisher polisher(setup.moving, filter, space, setup.strip_metric, options_.min_inside);
   parallelFor(kept.size(), [&](std::size_t i) { kept[i] = polisher.improve(kept[i]); });
   kept = distinctCandidates(std::move(kept), options_.candidates, options_.separation, setup.strip,
                             space);

@@ -82,13 +82,10 @@ MatchedFilter::MatchedFilter(const SignalMap& fixed, const MatchedFilterOptions&
   fft_.inverse(map, scratch);
   greenness_ = Raster<float>(fft_.rows(), fft_.cols());
   height_ = Raster<float>(fft_.rows(), fft_.cols());
-  double sum2 = 0.0;
   for (std::size_t i = 0; i < map.size(); ++i) {
     greenness_[i] = map.re[i];
     height_[i] = map.im[i];
-    sum2 += static_cast<double>(map.re[i] * map.re[i] + map.im[i] * map.im[i]);
   }
-  deviation_ = std::sqrt(0.5 * sum2 / static_cast<double>(map.size()));
 }
 
 void MatchedFilter::multiply(const Template& piece, ComplexRaster& product, Work& work) const {

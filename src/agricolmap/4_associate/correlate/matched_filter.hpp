@@ -57,8 +57,6 @@ class MatchedFilter {
   /// The whitened map itself, channel by channel; cells beyond the frame pad it for the FFT.
   const Raster<float>& whitenedGreenness() const { return greenness_; }
   const Raster<float>& whitenedHeight() const { return height_; }
-  /// RMS of both channels over the map.
-  double whitenedDeviation() const { return deviation_; }
 
  private:
   /// conj(template) · whitened map, both spectra.
@@ -70,7 +68,6 @@ class MatchedFilter {
   ComplexRaster whitened_;  ///< spectrum of the whitened map, greenness + i · height
   Raster<float> greenness_;
   Raster<float> height_;
-  double deviation_ = 0.0;
 };
 
 // Implementation of the template.

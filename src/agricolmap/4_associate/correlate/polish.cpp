@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 namespace agricolmap {
 namespace {
@@ -13,25 +14,24 @@ constexpr int kSweeps = 6;          // per step length, at most
 }  // namespace
 
 Polisher::Polisher(const SignalMap& moving, const MatchedFilter& filter, const SearchSpace& space,
-                   const Eigen::Matrix3d& strip_metric)
-    : filter_(filter), space_(space) {
+                   const Eigen::Matrix3d& strip_metric, double min_inside)
+    : filter_(filter), space_(space), min_inside_(min_inside) {
   const auto height_weight = static_cast<float>(filter.options().height_weight);
-  double energy = 0.0;
   for (int r = 0; r < moving.frame.rows; ++r) {
     for (int c = 0; c < moving.frame.cols; ++c) {
       const std::size_t i = moving.weight.index(r, c);
       if (moving.weight[i] <= 0.0F) continue;
       const float w = moving.weight[i];
-      const Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(),
-                      w * moving.channel[0][i], w * height_weight * moving.channel[1][i]};
-      energy += static_cast<double>(cell.greenness * cell.greenness + cell.height * cell.height);
+      Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(), w * moving.channel[0][i],
+                w * height_weight * moving.channel[1][i], 0.0F};
+      cell.energy = cell.greenness * cell.greenness + cell.height * cell.height;
+      energy_ += static_cast<double>(cell.energy);
       cells_.push_back(cell);
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(strip_metric);
   directions_ = eigen.eigenvectors() *
                 eigen.eigenvalues().cwiseMax(1e-9).cwiseSqrt().cwiseInverse().asDiagonal();
-  deviation_ = std::sqrt(energy) * filter.whitenedDeviation();
 }
 
 double Polisher::score(const Candidate& candidate) const {
@@ -46,6 +46,7 @@ double Polisher::score(const Candidate& candidate) const {
   const auto last_row = static_cast<float>(green.rows() - 1);
   const auto stride = static_cast<std::size_t>(green.cols());
   double sum = 0.0;
+  double inside = 0.0;
   for (const Cell& c : cells_) {
     const float x = origin.x() + linear(0, 0) * c.offset.x() + linear(0, 1) * c.offset.y();
     const float y = origin.y() + linear(1, 0) * c.offset.x() + linear(1, 1) * c.offset.y();
@@ -59,8 +60,11 @@ double Polisher::score(const Candidate& candidate) const {
         a * green[i] + b * green[i + 1] + d * green[i + stride] + e * green[i + stride + 1];
     const float h = a * high[i] + b * high[i + 1] + d * high[i + stride] + e * high[i + stride + 1];
     sum += static_cast<double>(c.greenness * g + c.height * h);
+    inside += static_cast<double>(c.energy);
   }
-  return deviation_ > 0.0 ? sum / deviation_ : 0.0;
+  const double share = energy_ > 0.0 ? inside / energy_ : 0.0;
+  if (share < min_inside_) return -std::numeric_limits<double>::infinity();
+  return sum / (candidate.deviation * std::sqrt(share));
 }
 
 Candidate Polisher::improve(Candidate best) const {

@@ -13,10 +13,10 @@ namespace agricolmap {
 class Polisher {
  public:
   Polisher(const SignalMap& moving, const MatchedFilter& filter, const SearchSpace& space,
-           const Eigen::Matrix3d& strip_metric);
+           const Eigen::Matrix3d& strip_metric, double min_inside);
 
-  /// Score in deviations of what chance gives; comparable between all candidates of a pair, since
-  /// the number of summed cells does not depend on the scales.
+  /// Score in the candidate's deviations, counting the cells that lie in the map; −∞ when these are
+  /// less than the least share of the strip.
   double score(const Candidate& candidate) const;
   /// Compass search with halving steps over heading, scales and shift.
   Candidate improve(Candidate candidate) const;
@@ -25,12 +25,14 @@ class Polisher {
   struct Cell {
     Eigen::Vector2f offset;  ///< from the search space's centre [m]
     float greenness, height;
+    float energy;
   };
   std::vector<Cell> cells_;
   const MatchedFilter& filter_;
   const SearchSpace& space_;
   Eigen::Matrix3d directions_;  ///< columns: steps of (yaw, log s_x, log s_y) that move 1 m RMS
-  double deviation_ = 1.0;
+  double energy_ = 0.0;
+  double min_inside_;
 };
 
 }  // namespace agricolmap
