@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -128,7 +129,6 @@ SimulatedPair assemblePair(const SimulationOptions& options, const StripPlace& s
   pair.ugv.rgb = std::move(below.rgb);
   pair.ugv.xyz.resize(count);
   pair.truth.resize(count);
-  std::vector<Eigen::Vector3d> file(count);
   parallelFor(
       count,
       [&](std::size_t i) {
@@ -136,10 +136,9 @@ SimulatedPair assemblePair(const SimulationOptions& options, const StripPlace& s
         pair.truth[i] = begin + turn * local;
         const Eigen::Vector3d drifted = pair.truth[i] + turn * drift.at(local.x(), local.y());
         pair.ugv.xyz[i] = (file_from_uav * drifted - pair.ugv.origin).cast<float>();
-        file[i] = pair.ugv.filePoint(i);
       },
       1U << 14);
-  pair.best_affine = fitAffine(file, pair.truth);
+  pair.best_affine = fitAffine(pair.ugv, pair.truth);
   return pair;
 }
 
