@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
@@ -68,6 +69,27 @@ struct Job {
   std::vector<std::string> presets;
 };
 
+/// `preset` or `preset:key=value:key=value`.
+RegistrationOptions variant(const std::string& text) {
+  const std::size_t end = text.find(':');
+  RegistrationOptions options = preset(text.substr(0, end));
+  const OptionTable table = optionTable(options);
+  for (std::size_t at = end; at != std::string::npos;) {
+    const std::size_t next = text.find(':', at + 1);
+    const std::string setting = text.substr(at + 1, next - at - 1);
+    const std::size_t equals = setting.find('=');
+    const std::string key = setting.substr(0, equals);
+    const OptionField* field = table.find(key);
+    if (equals == std::string::npos || field == nullptr) {
+      throw UsageError(
+          fmt::format("--presets {}: '{}' is not KEY=VALUE of a known option", text, setting));
+    }
+    parseOption(*field, setting.substr(equals + 1))();
+    at = next;
+  }
+  return options;
+}
+
 /// What is left to do, seed by seed, so that an interrupted campaign has all cases.
 std::vector<Job> plan(const std::vector<const CampaignCase*>& cases, const Arguments& arguments,
                       const PairTable& table) {
@@ -78,7 +100,7 @@ std::vector<Job> plan(const std::vector<const CampaignCase*>& cases, const Argum
       if (chosen->max_pairs > 0 && i >= chosen->max_pairs) continue;
       Job job{chosen, seed, {}};
       for (const std::string& name : arguments.presets) {
-        const int limit = name == "paper" ? arguments.paper_pairs : arguments.pairs;
+        const int limit = name.starts_with("paper") ? arguments.paper_pairs : arguments.pairs;
         if (i < limit && !table.has(chosen->name, seed, name)) job.presets.push_back(name);
       }
       if (!job.presets.empty()) jobs.push_back(std::move(job));
@@ -106,7 +128,7 @@ PairRow registerPair(const CampaignPair& pair, const std::string& preset_name) {
   const Stopwatch watch;
   try {
     const Registration result =
-        registerClouds(pair.fixed, pair.moving, pair.prior, preset(preset_name), times);
+        registerClouds(pair.fixed, pair.moving, pair.prior, variant(preset_name), times);
     row.total_s = watch.seconds();
     row.accepted = result.verdict.status == Status::kAccepted;
     if (result.has_transform) {
@@ -255,7 +277,7 @@ void measure(const Arguments& arguments, const std::vector<CampaignCase>& all,
              const std::string& identity) {
   RealFields fields(arguments.shared);
   const std::vector<const CampaignCase*> cases = chooseCases(arguments, all, fields);
-  for (const std::string& name : arguments.presets) preset(name);  // throws for unknown ones
+  for (const std::string& name : arguments.presets) variant(name);  // throws for unknown ones
   std::error_code error;
   std::filesystem::create_directories(arguments.output, error);
   if (error) {
@@ -273,10 +295,12 @@ void measure(const Arguments& arguments, const std::vector<CampaignCase>& all,
 void addFlags(CLI::App& app, Arguments& arguments) {
   app.add_option("-o,--output", arguments.output, "Folder for pairs.csv and the summary");
   app.add_option("--cases", arguments.cases, "Names of cases [all]")->delimiter(',');
-  app.add_option("--presets", arguments.presets, "Presets [default,paper]")->delimiter(',');
+  app.add_option("--presets", arguments.presets,
+                 "Presets, each with options to change: NAME or NAME:KEY=VALUE:… [default,paper]")
+      ->delimiter(',');
   app.add_option("--pairs", arguments.pairs, "Pairs per case [60]")->check(CLI::Range(1, 100000));
   app.add_option("--paper-pairs", arguments.paper_pairs,
-                 "Pairs per case for the preset 'paper' [as --pairs]")
+                 "Pairs per case for the presets 'paper' [as --pairs]")
       ->check(CLI::Range(0, 100000));
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first pair [5001]");
   app.add_option("--shared", arguments.shared, "Folder with the real data [../shared]");

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/io/raster_file.hpp"
 #include "agricolmap/io/raster_import.hpp"
+#include "agricolmap/simulate/ortho_file.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
 namespace agricolmap::campaign {
@@ -80,125 +77,6 @@ CampaignCase soybeanCase(bool uniform) {
   return made;
 }
 
-/// Columns and rows of `image` from `row` (of the top) and `col`, row 0 south.
-OrthoField cropField(const OrthoField& field, int row, int col, int size) {
-  OrthoField part;
-  part.name = field.name;
-  part.gsd = field.gsd;
-  part.row_heading = field.row_heading;
-  part.colour = Raster<Rgb>(size, size);
-  part.valid = Raster<std::uint8_t>(size, size);
-  for (int r = 0; r < size; ++r) {
-    std::copy_n(field.colour.row(row + r) + col, size, part.colour.row(r));
-    std::copy_n(field.valid.row(row + r) + col, size, part.valid.row(r));
-  }
-  return part;
-}
-
-/// The raster with row 0 south.
-template <typename T>
-Raster<T> southFirst(const Raster<T>& raster) {
-  Raster<T> flipped(raster.rows(), raster.cols());
-  for (int r = 0; r < raster.rows(); ++r) {
-    std::copy_n(raster.row(raster.rows() - 1 - r), raster.cols(), flipped.row(r));
-  }
-  return flipped;
-}
-
-/// A grid with square cells, row 0 south, over the area of a mosaic.
-struct SquareGrid {
-  double gsd = 0.0;                                  ///< [m]
-  Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< south-west [m]
-  int rows = 0;
-  int cols = 0;
-};
-
-const Eigen::Affine2d& placeOf(const RasterPlace& place, const std::string& name) {
-  if (!place.world_from_pixel) throw InputError(fmt::format("{}: has no georeference", name));
-  const Eigen::Matrix2d pixel = place.world_from_pixel->linear();
-  if (!(pixel(0, 0) > 0.0) || !(pixel(1, 1) < 0.0) || pixel(0, 1) != 0.0 || pixel(1, 0) != 0.0) {
-    throw InputError(fmt::format("{}: is not north up", name));
-  }
-  return *place.world_from_pixel;
-}
-
-SquareGrid squareGrid(const RasterImage& mosaic) {
-  const Eigen::Affine2d& world = placeOf(mosaic.place, mosaic.name);
-  SquareGrid grid;
-  grid.gsd = -world.linear()(1, 1);
-  grid.corner = world * Eigen::Vector2d(0.0, mosaic.colour.rows());
-  grid.rows = mosaic.colour.rows();
-  grid.cols = static_cast<int>(mosaic.colour.cols() * world.linear()(0, 0) / grid.gsd);
-  return grid;
-}
-
-/// Bilinear mean of `value(row, col)` at the centre of each cell, clamped at the raster's borders.
-/// `put(cell, mean)` takes it.
-template <typename Value, typename Put>
-void resample(const SquareGrid& grid, const Eigen::Affine2d& world, int rows, int cols,
-              const Value& value, const Put& put) {
-  const Eigen::Affine2d pixel_from_world = world.inverse();
-  for (int r = 0; r < grid.rows; ++r) {
-    for (int c = 0; c < grid.cols; ++c) {
-      const Eigen::Vector2d point = grid.corner + grid.gsd * Eigen::Vector2d(c + 0.5, r + 0.5);
-      const Eigen::Vector2d at = pixel_from_world * point - Eigen::Vector2d::Constant(0.5);
-      const double x = std::clamp(at.x(), 0.0, cols - 1.001);
-      const double y = std::clamp(at.y(), 0.0, rows - 1.001);
-      const int left = static_cast<int>(x);
-      const int top = static_cast<int>(y);
-      const double fx = x - left;
-      const double fy = y - top;
-      put(static_cast<std::size_t>(r) * grid.cols + c,
-          ((1.0 - fx) * value(top, left) + fx * value(top, left + 1)) * (1.0 - fy) +
-              ((1.0 - fx) * value(top + 1, left) + fx * value(top + 1, left + 1)) * fy);
-    }
-  }
-}
-
-void resampleColours(const RasterImage& mosaic, const SquareGrid& grid, OrthoField& field) {
-  const Eigen::Affine2d& world = placeOf(mosaic.place, mosaic.name);
-  const int rows = mosaic.colour.rows();
-  const int cols = mosaic.colour.cols();
-  field.colour = Raster<Rgb>(grid.rows, grid.cols);
-  field.valid = Raster<std::uint8_t>(grid.rows, grid.cols, 1);
-  for (std::uint8_t Rgb::*band : {&Rgb::r, &Rgb::g, &Rgb::b}) {
-    resample(
-        grid, world, rows, cols,
-        [&](int r, int c) { return static_cast<double>(mosaic.colour(r, c).*band); },
-        [&](std::size_t i, double mean) {
-          field.colour[i].*band = static_cast<std::uint8_t>(mean + 0.5);
-        });
-  }
-  resample(
-      grid, world, rows, cols, [&](int r, int c) { return mosaic.valid(r, c) != 0 ? 1.0 : 0.0; },
-      [&](std::size_t i, double share) { field.valid[i] = share > 0.999 ? 1 : 0; });
-}
-
-/// Cells without a height become invalid and get the mean height, since the simulator wants
-/// numbers.
-Raster<float> resampleHeights(const std::filesystem::path& path, const SquareGrid& grid,
-                              Raster<std::uint8_t>& valid) {
-  const RasterHeights heights = readHeights(path);
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const float h : heights.height) {
-    if (!std::isfinite(h)) continue;
-    sum += static_cast<double>(h);
-    ++count;
-  }
-  if (count == 0) throw InputError(fmt::format("{}: has no heights", path.string()));
-  const double mean_height = sum / static_cast<double>(count);
-  Raster<float> result(grid.rows, grid.cols);
-  resample(
-      grid, placeOf(heights.place, path.string()), heights.height.rows(), heights.height.cols(),
-      [&](int r, int c) { return static_cast<double>(heights.height(r, c)); },
-      [&](std::size_t i, double mean) {
-        if (!std::isfinite(mean)) valid[i] = 0;
-        result[i] = static_cast<float>(std::isfinite(mean) ? mean : mean_height);
-      });
-  return result;
-}
-
 CampaignPair fromSimulation(SimulatedPair pair) {
   CampaignPair made;
   made.fixed = std::move(pair.uav);
@@ -245,48 +123,32 @@ std::string RealFields::unavailable(PairSource source) const {
   return fmt::format("{} is not here; give --shared", path.string());
 }
 
-CampaignPair RealFields::beetPair(const SimulationOptions& options) {
-  if (!beets_) {
-    const std::filesystem::path path = shared_ / kBeetFile;
-    RasterOptions raster;
-    raster.bands = BandOrder::kGrb;  // its false colours have red and green swapped
-    const RasterImage image = readRaster(path, raster);
-    if (image.colour.rows() < kBeetMiddleRow + kBeetWindow ||
-        image.colour.cols() < kBeetMiddleCol + kBeetWindow / 2) {
-      throw InputError(fmt::format("{}: is {} x {} pixels, not the mosaic this case is made for",
-                                   path.string(), image.colour.cols(), image.colour.rows()));
-    }
-    OrthoField field;
-    field.name = path.string();
-    field.gsd = kBeetGsd;
-    field.row_heading = kBeetRowHeading;
-    field.colour = southFirst(image.colour);
-    field.valid = southFirst(image.valid);
-    beets_ = std::move(field);
-  }
+CampaignPair RealFields::beetPair(const SimulationOptions& options) const {
+  OrthoFileOptions file;
+  file.raster.bands = BandOrder::kGrb;  // its false colours have red and green swapped
+  file.gsd = kBeetGsd;
   // Another window for each seed, by up to half a metre.
   Random random = Random::stream(static_cast<std::uint64_t>(options.seed), 0xBEE7);
-  const int col = kBeetMiddleCol - kBeetWindow / 2 - 50 + static_cast<int>(random.below(101));
-  const int middle_row = beets_->colour.rows() - 1 - kBeetMiddleRow;
-  const int row = middle_row - kBeetWindow / 2 - 50 + static_cast<int>(random.below(101));
-  return fromSimulation(simulateFromOrtho(cropField(*beets_, row, col, kBeetWindow), options));
+  PixelWindow window{kBeetMiddleCol - kBeetWindow / 2 - 50, kBeetMiddleRow + 51 - kBeetWindow / 2,
+                     kBeetWindow, kBeetWindow};
+  window.col += static_cast<int>(random.below(101));
+  window.row -= static_cast<int>(random.below(101));
+  OrthoField field = readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, file, window);
+  field.row_heading = kBeetRowHeading;
+  return fromSimulation(simulateFromOrtho(field, options));
 }
 
 RealFields::Soybean RealFields::loadSoybean(const std::filesystem::path& folder) {
   Soybean loaded;
   loaded.cloud = importOrthoDsm(folder / "soy_ortho.tif", folder / "soy_dsm.tif");
-  const RasterImage mosaic = readRaster(folder / "soy_ortho.tif");
-  const SquareGrid grid = squareGrid(mosaic);
   OrthoField& field = loaded.field;
-  field.name = mosaic.name;
-  field.gsd = grid.gsd;
+  field = readOrtho({.ortho = folder / "soy_ortho.tif",
+                     .dsm = folder / "soy_dsm.tif",
+                     .dtm = folder / "soy_dtm.tif"});
   field.row_heading = kSoybeanRowHeading;
-  resampleColours(mosaic, grid, field);
-  field.height = resampleHeights(folder / "soy_dsm.tif", grid, field.valid);
-  field.ground = resampleHeights(folder / "soy_dtm.tif", grid, field.valid);
   // The simulator counts heights from the ground in the middle of the mosaic.
   const float zero = field.ground(field.ground.rows() / 2, field.ground.cols() / 2);
-  loaded.place = {grid.corner.x(), grid.corner.y(), static_cast<double>(zero)};
+  loaded.place << field.corner.value(), static_cast<double>(zero);
   return loaded;
 }
 

@@ -44,14 +44,14 @@ struct CampaignPair {
 /// the case's, instead of always as large.
 std::vector<CampaignCase> allCases(bool uniform);
 
-/// The real data, read when first needed and kept.
+/// The real data.
 class RealFields {
  public:
   explicit RealFields(std::filesystem::path shared) : shared_(std::move(shared)) {}
 
   /// Why pairs of this source cannot be made here; empty if they can.
   std::string unavailable(PairSource source) const;
-  CampaignPair beetPair(const SimulationOptions& options);
+  CampaignPair beetPair(const SimulationOptions& options) const;
   CampaignPair soybeanPair(const SimulationOptions& options);
 
  private:
@@ -63,7 +63,6 @@ class RealFields {
   static Soybean loadSoybean(const std::filesystem::path& folder);
 
   std::filesystem::path shared_;
-  std::optional<OrthoField> beets_;
   std::optional<Soybean> soybean_;
 };
 

@@ -4,6 +4,7 @@
 #include "agricolmap/config/markdown.hpp"
 #include "agricolmap/io/raster_import.hpp"
 #include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/simulate/ortho_file.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 #include "common.hpp"
 
@@ -23,10 +24,20 @@ ExitCode runDocument() {
       "Every option is a flag (`--grid.cell 0.02`) and, for `register` and `simulate`, a key of "
       "the YAML\nfile given with `--config` (`grid:` and below it `cell: 0.02`). Flags win over "
       "the file, the file over\nthe preset. `--dump-config` prints what is in force.\n");
-  printSection<RegistrationOptions>(
-      "register", "Defaults are those of `--preset default`; `--preset paper` has others.");
+  printSection<RegistrationOptions>("register",
+                                    "Defaults are those of `--preset default`; `--preset paper` "
+                                    "and `--preset paper-literal` have "
+                                    "others.");
   printSection<SimulationOptions>(
       "simulate", "Defaults are those of the default crop; each `--crop` brings its own.");
+  printSection<OrthoFileOptions>(
+      "simulate --ortho",
+      "How an orthomosaic is read; flags only, beside `--dsm`, `--dtm`, `--window` and "
+      "`--row_heading`. Of the\noptions above, `field.width` and `field.height` limit the part of "
+      "the mosaic that is taken,\n`field.random_row_heading` stands for a measured heading of the "
+      "rows, and `field.relief`, `field.slope`,\n`field.clods` and `field.plant_size` are used "
+      "where there is no surface model. The rest of `field.*` and\n`views.weeds_pulled` do nothing "
+      "and are refused as flags. `uav.gsd` is at least the mosaic's.");
   printSection<ImportOptions>("import", "From an orthomosaic and a surface model to a cloud.");
   return ExitCode::kOk;
 }

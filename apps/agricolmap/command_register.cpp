@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "agricolmap/config/json.hpp"
+#include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud_reader.hpp"
@@ -29,11 +30,37 @@ struct RegisterArguments {
   std::string prior;
   std::string config;
   std::string preset = "default";
+  std::string prior_sigma;
   bool dump_config = false;
   bool keep_rejected = false;
   bool no_pictures = false;
   OptionFlags flags;
 };
+
+/// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, each value within its option's limits.
+void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const OptionTable& table) {
+  if (text == "none") {
+    prior = PriorUncertainty::none();
+    return;
+  }
+  const std::vector<std::string> parts = CLI::detail::split(text, ',');
+  double scale = 0.0;
+  if (parts.size() != 3 || !CLI::detail::lexical_cast(parts[2], scale)) {
+    throw UsageError(fmt::format(
+        "--prior-sigma {}: is neither T_M,HEADING_DEG,SCALE_PERCENT (such as 5,11.5,30) nor 'none'",
+        text));
+  }
+  const auto set = [&](const char* key, const std::string& value) {
+    try {
+      parseOption(*table.find(key), value)();
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("--prior-sigma {}: {}", text, error.what()));
+    }
+  };
+  set("prior.translation", parts[0]);
+  set("prior.heading_deg", parts[1]);
+  set("prior.scale", fmt::format("{:.17g}", scale / 100.0));
+}
 
 /// Defaults, then the preset, then the configuration file, then flags.
 RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Globals& globals) {
@@ -42,6 +69,7 @@ RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Glob
   options.affine.seed = globals.seed;
   OptionTable table = optionTable(options);
   if (!arguments.config.empty()) loadYaml(arguments.config, table);
+  if (!arguments.prior_sigma.empty()) applyPriorSigma(arguments.prior_sigma, options.prior, table);
   arguments.flags.apply(table);
   return options;
 }
@@ -173,7 +201,11 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   command->add_option("--prior", arguments->prior,
                       "Initial guess: 4x4 text, row-major, moving -> fixed file coordinates. "
                       "Default: offset.xyz beside each cloud, else coordinates as they stand");
-  command->add_option("--preset", arguments->preset, "default or paper [default]");
+  command->add_option(
+      "--prior-sigma", arguments->prior_sigma,
+      "How wrong the initial guess may be: T_M,HEADING_DEG,SCALE_PERCENT, or 'none' "
+      "for no guess: any place and heading [5,11.5,30]");
+  command->add_option("--preset", arguments->preset, "default, paper or paper-literal [default]");
   command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");

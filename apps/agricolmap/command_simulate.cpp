@@ -1,4 +1,5 @@
-// agricolmap simulate -o DIR: a pair of clouds with exact truth.
+// agricolmap simulate -o DIR: a pair of clouds with exact truth, of a simulated crop or of a real
+// orthomosaic.
 #include <fmt/format.h>
 
 #include <memory>
@@ -12,6 +13,7 @@
 #include "agricolmap/simulate/simulate.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
+#include "ortho_arguments.hpp"
 
 namespace agricolmap {
 namespace {
@@ -21,6 +23,7 @@ struct SimulateArguments {
   std::string config;
   bool dump_config = false;
   OptionFlags flags;
+  OrthoArguments ortho;
 };
 
 /// The crop's preset, then the configuration file, then flags; the crop may come from either.
@@ -49,8 +52,9 @@ Cloud truthCloud(const SimulatedPair& pair) {
   return cloud;
 }
 
-ExitCode runSimulate(const SimulateArguments& arguments, const Globals& globals) {
+ExitCode runSimulate(SimulateArguments& arguments, const Globals& globals) {
   SimulationOptions options = chosenOptions(arguments, globals);
+  const bool from_ortho = arguments.ortho.given(arguments.flags);
   const OptionTable table = optionTable(options);
   if (arguments.dump_config) {
     fmt::print("{}", dumpYaml(table));
@@ -60,7 +64,7 @@ ExitCode runSimulate(const SimulateArguments& arguments, const Globals& globals)
   StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step("simulate");
-  const SimulatedPair pair = simulatePair(options);
+  const SimulatedPair pair = from_ortho ? arguments.ortho.simulate(options) : simulatePair(options);
   progress.step("write");
   writePly(output.path("uav/point_cloud.ply"), pair.uav);
   writePly(output.path("ugv/point_cloud.ply"), pair.ugv);
@@ -71,7 +75,8 @@ ExitCode runSimulate(const SimulateArguments& arguments, const Globals& globals)
   writeMatrix(output.path("truth.txt"), pair.best_affine,
               "best affine, UGV file -> UAV file; not exact where the strip drifts");
   writePly(output.path("truth_points.ply"), truthCloud(pair));
-  writeText(output.path("simulation.yaml"), dumpYaml(table));
+  writeText(output.path("simulation.yaml"),
+            (from_ortho ? arguments.ortho.provenance() : "") + dumpYaml(table));
   output.commit();
   if (!globals.quiet) {
     fmt::print("{}: UAV {} points, UGV {} points{}\n", arguments.output, pair.uav.size(),
@@ -87,11 +92,12 @@ CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals) {
   CLI::App* command = app.add_subcommand(
       "simulate",
       "Make a UAV/UGV pair of a crop field with exact truth, in the layout of the "
-      "published data set");
+      "published data set: of a simulated crop, or cut from a real orthomosaic (--ortho)");
   command->add_option("-o,--output", arguments->output, "Folder for the pair");
   command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");
+  arguments->ortho.addTo(*command);
   SimulationOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the simulator", {"seed"});
   return {command, [arguments, &globals] { return runSimulate(*arguments, globals); }};

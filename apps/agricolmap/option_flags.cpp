@@ -39,4 +39,14 @@ void OptionFlags::apply(const OptionTable& table) const {
   table.check();
 }
 
+bool OptionFlags::given(const std::string& path) const {
+  const auto found = texts_.find(path);
+  return found != texts_.end() && !found->second->empty();
+}
+
+bool OptionFlags::anyGiven() const {
+  return std::any_of(texts_.begin(), texts_.end(),
+                     [](const auto& entry) { return !entry.second->empty(); });
+}
+
 }  // namespace agricolmap

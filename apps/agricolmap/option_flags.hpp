@@ -22,6 +22,9 @@ class OptionFlags {
   /// Writes what was given into `table`; throws UsageError for values that do not parse or lie
   /// outside their limits.
   void apply(const OptionTable& table) const;
+  /// Whether the command line has the flag of this option, or any.
+  bool given(const std::string& path) const;
+  bool anyGiven() const;
 
  private:
   std::map<std::string, std::shared_ptr<std::string>> texts_;

@@ -5,12 +5,21 @@
 namespace agricolmap {
 
 void describe(OptionTable& table, PriorUncertainty& options) {
-  table.number("translation", options.translation, 0.0, 1000.0, "m",
-               "how far off the initial guess may be, horizontally (paper: 5)");
+  table.number(
+      "translation", options.translation, 0.0, kAnywhere, "m",
+      "how far off the initial guess may be, horizontally (paper: 5); 1e6: anywhere in the "
+      "fixed map");
   table.number("heading_deg", options.heading_deg, 0.0, 180.0, "deg",
                "how far off its heading may be (paper: 11.5)");
   table.number("scale", options.scale, 0.0, 0.5, "",
                "how far off each horizontal scale may be, relative (paper: 0.30)");
+}
+
+PriorUncertainty PriorUncertainty::none() {
+  PriorUncertainty uncertainty;
+  uncertainty.translation = kAnywhere;
+  uncertainty.heading_deg = 180.0;
+  return uncertainty;
 }
 
 double logScaleLimit(const PriorUncertainty& uncertainty) {

@@ -14,8 +14,15 @@
 
 namespace agricolmap {
 
+/// A translation error of this size [m] means: anywhere in the fixed map.
+inline constexpr double kAnywhere = 1e6;
+
 /// How wrong the initial guess may be (defaults: the paper's, Sec. V-A). Limits, not deviations.
 struct PriorUncertainty {
+  /// No guess at all: any position and heading; scales within the default.
+  static PriorUncertainty none();
+  bool anywhere() const { return translation >= kAnywhere; }
+
   double translation = 5.0;   ///< horizontal, at the moving map's centre [m]
   double heading_deg = 11.5;  ///< [°]
   double scale = 0.30;        ///< of each horizontal axis, relative (0.30: 0.7–1.3)

@@ -15,11 +15,12 @@ struct FlowAssociationOptions {
   FlowOptions flow;
   VoteOptions vote;
   /// Matches with the moving map warped beforehand where the guess may be off by more than the
-  /// descriptors tolerate; off in the paper.
+  /// descriptors tolerate; not in the paper.
   bool warps = true;
   double heading_tolerance_deg = 8.0;  ///< heading error to match with without a warp [°]
   double scale_tolerance = 0.18;       ///< and error of a scale's logarithm
-  /// Matches the placements found again, each with the moving map warped by it; off in the paper.
+  /// Matches the placements found again, each with the moving map warped by it; not in the
+  /// paper.
   bool rematch = true;
   int seed = 1;  ///< of the random search
 };

@@ -10,9 +10,10 @@
 namespace agricolmap {
 
 struct VerticalOptions {
-  double ground_window = 0.6;  ///< side of the window whose lowest cells are ground [m]
-  double max_slope = 0.2;      ///< larger tilts between the levelled maps are refused
-  double robust = 2.5;         ///< residuals beyond this many deviations do not count (Tukey)
+  double ground_window = 0.6;      ///< side of the window whose lowest cells are ground [m]
+  double ground_tolerance = 0.03;  ///< height above the ground at which a cell stops to be it [m]
+  double max_slope = 0.2;          ///< larger tilts between the levelled maps are refused
+  double robust = 2.5;             ///< residuals beyond this many deviations do not count (Tukey)
 };
 void describe(OptionTable& table, VerticalOptions& options);
 
@@ -26,12 +27,15 @@ struct VerticalResult {
   Eigen::Vector2d about = Eigen::Vector2d::Zero();  ///< middle of the overlap [m]
   double canopy_gain =
       1.0;                ///< how tall the fixed map sees what the moving map sees as 1 m of canopy
-  double residual = 0.0;  ///< robust deviation of the cells from the model [m]
-  std::size_t cells = 0;  ///< cells used
+  double residual = 0.0;  ///< robust deviation of the ground cells from the model [m]
+  std::size_t cells = 0;  ///< cells that both maps see
+  double ground_share = 0.0;  ///< of these, the share that is ground in both maps
 };
 
-/// Regresses the height difference of the overlapping cells on position and on the canopy's height
-/// as the moving map sees it, and takes the value at no canopy: research notes §2.
+/// Offset and tilt from the cells that are ground in both maps. A leaf over a cell lifts it in one
+/// map more than in the other, by tens of centimetres in tall crops; where both see the soil, the
+/// difference of heights is the registration's (simulated crops: within 2 cm). Under a canopy
+/// without gaps, the lowest cells stand for the ground, and `ground_share` is small.
 VerticalResult fitVertical(const GridMap& fixed, const GridMap& moving,
                            const Eigen::Affine2d& fixed_from_moving,
                            const VerticalOptions& options);

@@ -39,10 +39,13 @@ template <typename Accept>
 Peak highest(const ComplexRaster& surface, const Fft2& fft, const GridFrame& frame,
              const Eigen::Vector2d& centre, double radius, const Accept& accept) {
   Peak peak;
-  const int r0 = std::max(0, static_cast<int>(std::floor(centre.y() - radius)));
-  const int r1 = std::min(frame.rows - 1, static_cast<int>(std::ceil(centre.y() + radius)));
-  const int c0 = std::max(0, static_cast<int>(std::floor(centre.x() - radius)));
-  const int c1 = std::min(frame.cols - 1, static_cast<int>(std::ceil(centre.x() + radius)));
+  const auto within = [](double at, int count) {
+    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
+  };
+  const int r0 = within(std::floor(centre.y() - radius), frame.rows);
+  const int r1 = within(std::ceil(centre.y() + radius), frame.rows);
+  const int c0 = within(std::floor(centre.x() - radius), frame.cols);
+  const int c1 = within(std::ceil(centre.x() + radius), frame.cols);
   for (int r = r0; r <= r1; ++r) {
     for (int c = c0; c <= c1; ++c) {
       const Eigen::Vector2d at(c, r);
@@ -78,8 +81,8 @@ ComplexRaster EvidenceMeter::wholeSurface(const Eigen::Affine2d& pose, Eigen::Ve
       makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
                    options_.filter.height_weight, [](const Eigen::Vector2d&) { return true; });
   ComplexRaster surface(filter_.fft().size());
-  ComplexRaster scratch(filter_.fft().size());
-  filter_.correlate(piece, surface, scratch);
+  MatchedFilter::Work work(filter_);
+  filter_.correlate(piece, surface, work);
   at = fixed_.frame.cellOf(pose * strip_.centre);
   return surface;
 }
@@ -117,8 +120,8 @@ BlockEvidence EvidenceMeter::placeBlock(const Block& block, const Eigen::Affine2
   usable = piece.filled >= kMinSeenShare * area && seen >= kMinSeenShare * looked;
   if (!usable) return evidence;
   ComplexRaster surface(filter_.fft().size());
-  ComplexRaster scratch(filter_.fft().size());
-  filter_.correlate(piece, surface, scratch);
+  MatchedFilter::Work work(filter_);
+  filter_.correlate(piece, surface, work);
   const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, options_.block_reach / cell,
                             [](const Eigen::Vector2d&) { return true; });
   evidence.offset = cell * (peak.at - at);

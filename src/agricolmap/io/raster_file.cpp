@@ -42,7 +42,8 @@ struct QuietGdal {
 };
 
 [[noreturn]] void fail(const std::string& name, std::string_view what) {
-  throw InputError(fmt::format("{}: {}: {}", name, what, CPLGetLastErrorMsg()));
+  const std::string reason = CPLGetLastErrorMsg();
+  throw InputError(fmt::format("{}: {}{}{}", name, what, reason.empty() ? "" : ": ", reason));
 }
 
 GDALDatasetUniquePtr openRaster(const std::filesystem::path& path) {
@@ -60,13 +61,6 @@ GDALDatasetUniquePtr openRaster(const std::filesystem::path& path) {
   if (dataset->GetRasterCount() == 0) {
     throw InputError(fmt::format("{}: has no bands of its own", path.string()));
   }
-  const double pixels = 1.0 * dataset->GetRasterXSize() * dataset->GetRasterYSize();
-  if (pixels > kMaxPixels) {
-    throw InputError(fmt::format(
-        "{}: {} x {} pixels are too many (limit {:.0e}); crop it with gdalwarp -te or thin it with "
-        "gdal_translate -outsize",
-        path.string(), dataset->GetRasterXSize(), dataset->GetRasterYSize(), kMaxPixels));
-  }
   return dataset;
 }
 
@@ -83,19 +77,61 @@ RasterPlace placeOf(GDALDataset& dataset) {
   return place;
 }
 
-/// Reads a band into `out`, `spacing` bytes from pixel to pixel.
-void readBand(GDALRasterBand& band, GDALDataType type, void* out, int spacing,
-              const std::string& name) {
-  const int cols = band.GetXSize();
-  const int rows = band.GetYSize();
-  for (int row = 0; row < rows; row += kStripRows) {
+/// The pixels to read and how many come of it.
+struct Section {
+  PixelWindow window;  ///< whole blocks of `step`
+  int step = 1;
+  int rows = 0;
+  int cols = 0;
+};
+
+Section sectionOf(GDALDataset& dataset, const RasterPart& part, const std::string& name) {
+  const int cols = dataset.GetRasterXSize();
+  const int rows = dataset.GetRasterYSize();
+  Section section;
+  section.window = part.window.value_or(PixelWindow{0, 0, cols, rows});
+  PixelWindow& window = section.window;
+  if (window.col < 0 || window.row < 0 || window.cols < 1 || window.rows < 1 ||
+      window.cols > cols - window.col || window.rows > rows - window.row) {
+    throw InputError(fmt::format(
+        "{}: the window of {} x {} pixels at column {}, row {} is not within its {} x {} pixels",
+        name, window.cols, window.rows, window.col, window.row, cols, rows));
+  }
+  section.step = std::clamp(part.step, 1, std::min(window.cols, window.rows));
+  section.cols = window.cols / section.step;
+  section.rows = window.rows / section.step;
+  window.cols = section.cols * section.step;
+  window.rows = section.rows * section.step;
+  const double pixels = 1.0 * section.cols * section.rows;
+  if (pixels > kMaxPixels) {
+    throw InputError(fmt::format(
+        "{}: {} x {} pixels are too many (limit {:.0e}); crop it with gdalwarp -te or thin it with "
+        "gdal_translate -outsize",
+        name, cols, rows, kMaxPixels));
+  }
+  return section;
+}
+
+void moveTo(const Section& section, RasterPlace& place) {
+  if (!place.world_from_pixel) return;
+  place.world_from_pixel->translate(Eigen::Vector2d(section.window.col, section.window.row));
+  place.world_from_pixel->scale(section.step);
+}
+
+/// Reads a section of a band into `out`, `spacing` bytes from pixel to pixel.
+void readBand(GDALRasterBand& band, const Section& section, GDALDataType type, void* out,
+              int spacing, const std::string& name) {
+  const PixelWindow& window = section.window;
+  const int step = section.step;
+  for (int row = 0; row < section.rows; row += kStripRows) {
     throwIfInterrupted();
-    const int count = std::min(kStripRows, rows - row);
+    const int count = std::min(kStripRows, section.rows - row);
     auto* const to =
-        static_cast<std::byte*>(out) + static_cast<std::ptrdiff_t>(row) * cols * spacing;
-    if (band.RasterIO(GF_Read, 0, row, cols, count, to, cols, count, type, spacing,
-                      static_cast<GSpacing>(cols) * spacing, nullptr) != CE_None) {
-      fail(name, fmt::format("damaged or truncated at row {}", row));
+        static_cast<std::byte*>(out) + static_cast<std::ptrdiff_t>(row) * section.cols * spacing;
+    if (band.RasterIO(GF_Read, window.col, window.row + row * step, window.cols, count * step, to,
+                      section.cols, count, type, spacing,
+                      static_cast<GSpacing>(section.cols) * spacing, nullptr) != CE_None) {
+      fail(name, fmt::format("damaged or truncated at row {}", window.row + row * step));
     }
   }
 }
@@ -133,7 +169,8 @@ Bands colourBands(GDALDataset& dataset, BandOrder order, const std::string& name
 }
 
 /// Marks what alpha or the file's mask leaves out; false when it has neither.
-bool applyMask(GDALDataset& dataset, GDALRasterBand& first, RasterImage& image) {
+bool applyMask(GDALDataset& dataset, const Section& section, GDALRasterBand& first,
+               RasterImage& image) {
   GDALRasterBand* mask = nullptr;
   int least = 1;
   for (int i = 1; i <= dataset.GetRasterCount() && mask == nullptr; ++i) {
@@ -146,7 +183,7 @@ bool applyMask(GDALDataset& dataset, GDALRasterBand& first, RasterImage& image) 
     mask = first.GetMaskBand();
   }
   if (mask == nullptr) return false;
-  readBand(*mask, GDT_Byte, image.valid.data(), 1, image.name);
+  readBand(*mask, section, GDT_Byte, image.valid.data(), 1, image.name);
   for (std::uint8_t& value : image.valid) value = value >= least ? 1 : 0;
   return true;
 }
@@ -164,10 +201,12 @@ struct NoData {
   }
 };
 
-void readBytes(const Bands& bands, const NoData& nodata, RasterImage& image) {
+void readBytes(const Bands& bands, const Section& section, const NoData& nodata,
+               RasterImage& image) {
   static_assert(sizeof(Rgb) == 3);
   auto* const first = reinterpret_cast<std::byte*>(image.colour.data());
-  for (std::size_t c = 0; c < 3; ++c) readBand(*bands[c], GDT_Byte, first + c, 3, image.name);
+  for (std::size_t c = 0; c < 3; ++c)
+    readBand(*bands[c], section, GDT_Byte, first + c, 3, image.name);
   if (!nodata.declared) return;
   for (std::size_t i = 0; i < image.colour.size(); ++i) {
     const Rgb colour = image.colour[i];
@@ -195,12 +234,13 @@ float whiteScale(const std::array<Raster<float>, 3>& values, const Raster<std::u
   return *at > 0.0F ? 255.0F / *at : 1.0F;
 }
 
-void readWide(const Bands& bands, const NoData& nodata, RasterImage& image) {
+void readWide(const Bands& bands, const Section& section, const NoData& nodata,
+              RasterImage& image) {
   std::array<Raster<float>, 3> values;
   bool integers = true;
   for (std::size_t c = 0; c < 3; ++c) {
     values[c] = Raster<float>(image.colour.rows(), image.colour.cols());
-    readBand(*bands[c], GDT_Float32, values[c].data(), sizeof(float), image.name);
+    readBand(*bands[c], section, GDT_Float32, values[c].data(), sizeof(float), image.name);
     integers = integers && GDALDataTypeIsInteger(bands[c]->GetRasterDataType()) != 0;
   }
   for (std::size_t i = 0; i < image.valid.size(); ++i) {
@@ -224,7 +264,14 @@ void readWide(const Bands& bands, const NoData& nodata, RasterImage& image) {
 
 }  // namespace
 
-RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& options) {
+RasterShape readRasterShape(const std::filesystem::path& path) {
+  const QuietGdal quiet;
+  const GDALDatasetUniquePtr dataset = openRaster(path);
+  return {path.string(), dataset->GetRasterXSize(), dataset->GetRasterYSize(), placeOf(*dataset)};
+}
+
+RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& options,
+                       const RasterPart& part) {
   checkOptions(options);
   const QuietGdal quiet;
   const GDALDatasetUniquePtr dataset = openRaster(path);
@@ -232,15 +279,17 @@ RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& o
   image.name = path.string();
   image.place = placeOf(*dataset);
   const Bands bands = colourBands(*dataset, options.bands, image.name);
-  image.colour = Raster<Rgb>(dataset->GetRasterYSize(), dataset->GetRasterXSize());
+  const Section section = sectionOf(*dataset, part, image.name);
+  moveTo(section, image.place);
+  image.colour = Raster<Rgb>(section.rows, section.cols);
   image.valid = Raster<std::uint8_t>(image.colour.rows(), image.colour.cols(), 1);
-  const bool masked = applyMask(*dataset, *bands[0], image);
+  const bool masked = applyMask(*dataset, section, *bands[0], image);
   const NoData nodata(bands);
   const auto is_byte = [](GDALRasterBand* b) { return b->GetRasterDataType() == GDT_Byte; };
   if (std::all_of(bands.begin(), bands.end(), is_byte)) {
-    readBytes(bands, nodata, image);
+    readBytes(bands, section, nodata, image);
   } else {
-    readWide(bands, nodata, image);
+    readWide(bands, section, nodata, image);
   }
   if (!masked && !nodata.declared && options.black_is_nodata) {
     for (std::size_t i = 0; i < image.valid.size(); ++i) {
@@ -248,20 +297,23 @@ RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& o
     }
   }
   if (std::all_of(image.valid.begin(), image.valid.end(), [](auto v) { return v == 0; })) {
-    throw InputError(fmt::format("{}: no pixel of the picture has data", image.name));
+    throw InputError(fmt::format("{}: no pixel of {} has data", image.name,
+                                 part.window ? "the window" : "the picture"));
   }
   return image;
 }
 
-RasterHeights readHeights(const std::filesystem::path& path) {
+RasterHeights readHeights(const std::filesystem::path& path, const RasterPart& part) {
   const QuietGdal quiet;
   const GDALDatasetUniquePtr dataset = openRaster(path);
   RasterHeights heights;
   heights.name = path.string();
   heights.place = placeOf(*dataset);
-  heights.height = Raster<float>(dataset->GetRasterYSize(), dataset->GetRasterXSize());
+  const Section section = sectionOf(*dataset, part, heights.name);
+  moveTo(section, heights.place);
+  heights.height = Raster<float>(section.rows, section.cols);
   GDALRasterBand& band = *dataset->GetRasterBand(1);
-  readBand(band, GDT_Float32, heights.height.data(), sizeof(float), heights.name);
+  readBand(band, section, GDT_Float32, heights.height.data(), sizeof(float), heights.name);
   const double scale = band.GetScale();
   const double shift = band.GetOffset();
   int has_nodata = 0;
@@ -277,6 +329,22 @@ RasterHeights readHeights(const std::filesystem::path& path) {
   }
   if (valid == 0) throw InputError(fmt::format("{}: no pixel has a height", heights.name));
   return heights;
+}
+
+void removeFarHeights(Raster<float>& heights, double max_height) {
+  const std::size_t step = std::max<std::size_t>(1, heights.size() / kSampleSize);
+  std::vector<float> sample;
+  for (std::size_t i = 0; i < heights.size(); i += step) {
+    if (!std::isnan(heights[i])) sample.push_back(heights[i]);
+  }
+  if (sample.empty()) return;
+  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(sample.begin(), middle, sample.end());
+  const float median = *middle;
+  const auto limit = static_cast<float>(max_height);
+  for (float& height : heights) {
+    if (std::abs(height - median) > limit) height = std::numeric_limits<float>::quiet_NaN();
+  }
 }
 
 }  // namespace agricolmap

@@ -1,7 +1,6 @@
 #include "agricolmap/io/raster_import.hpp"
 
 #include <fmt/format.h>
-#include <ogr_spatialref.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/io/raster_place.hpp"
 
 namespace agricolmap {
 
@@ -25,64 +25,6 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLeastWeight = 0.5F;
-constexpr double kMetreTolerance = 1e-6;
-constexpr std::size_t kSampleSize = 1U << 20;
-
-OGRSpatialReference horizontalCrs(const RasterPlace& place, const std::string& name) {
-  OGRSpatialReference crs;
-  if (crs.importFromWkt(place.crs.c_str()) != OGRERR_NONE) {
-    throw InputError(fmt::format("{}: its coordinate system cannot be understood", name));
-  }
-  if (crs.IsCompound() != 0) crs.StripVertical();
-  return crs;
-}
-
-void checkMetres(const RasterPlace& place, const std::string& name) {
-  if (!place.world_from_pixel) {
-    throw InputError(fmt::format(
-        "{}: is not georeferenced; give it its place with gdal_translate -a_ullr and -a_srs",
-        name));
-  }
-  if (std::abs(place.world_from_pixel->linear().determinant()) <= 0.0) {
-    throw InputError(fmt::format("{}: its georeference is degenerate", name));
-  }
-  if (place.crs.empty()) return;
-  const OGRSpatialReference crs = horizontalCrs(place, name);
-  if (crs.IsGeographic() != 0 || crs.IsGeocentric() != 0) {
-    throw InputError(fmt::format(
-        "{}: its coordinates are degrees, not metres; reproject it: gdalwarp -t_srs EPSG:326<zone> "
-        "(UTM north; 327<zone> south)",
-        name));
-  }
-  const char* unit = nullptr;
-  const double metres = crs.GetLinearUnits(&unit);
-  if (std::abs(metres - 1.0) > kMetreTolerance) {
-    throw InputError(
-        fmt::format("{}: its coordinates are in units of {} m ({}); reproject it to metres with "
-                    "gdalwarp -t_srs",
-                    name, metres, unit == nullptr ? "unnamed" : unit));
-  }
-}
-
-void checkPlaces(const RasterImage& ortho, const RasterHeights& dsm) {
-  checkMetres(ortho.place, ortho.name);
-  checkMetres(dsm.place, dsm.name);
-  if (ortho.place.crs.empty() || dsm.place.crs.empty()) {
-    spdlog::warn(
-        "{}: coordinate system not given; taken as metres in the same one for both rasters",
-        ortho.place.crs.empty() ? ortho.name : dsm.name);
-    return;
-  }
-  const OGRSpatialReference one = horizontalCrs(ortho.place, ortho.name);
-  const OGRSpatialReference other = horizontalCrs(dsm.place, dsm.name);
-  const char* const lenient[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT",
-                                 nullptr};
-  if (one.IsSame(&other, lenient) == 0) {
-    throw InputError(fmt::format(
-        "{} ({}) and {} ({}) have different coordinate systems; reproject one with gdalwarp -t_srs",
-        ortho.name, one.GetName(), dsm.name, other.GetName()));
-  }
-}
 
 /// Bilinear between the centres of pixels; NaN where less than half the weight has data.
 float sampleHeight(const Raster<float>& height, const Eigen::Vector2d& pixel) {
@@ -125,33 +67,6 @@ Raster<float> sampleAll(const RasterImage& ortho, const RasterHeights& dsm, int 
     }
   });
   return heights;
-}
-
-std::string extentOf(const RasterPlace& place, int rows, int cols) {
-  Eigen::AlignedBox2d box;
-  for (const auto& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(cols, 0),
-                             Eigen::Vector2d(0, rows), Eigen::Vector2d(cols, rows)}) {
-    box.extend(*place.world_from_pixel * corner);
-  }
-  return fmt::format("{:.1f}..{:.1f}, {:.1f}..{:.1f}", box.min().x(), box.max().x(), box.min().y(),
-                     box.max().y());
-}
-
-/// Removes heights far from the median.
-void removeOutliers(Raster<float>& heights, double max_height) {
-  const std::size_t step = std::max<std::size_t>(1, heights.size() / kSampleSize);
-  std::vector<float> sample;
-  for (std::size_t i = 0; i < heights.size(); i += step) {
-    if (!std::isnan(heights[i])) sample.push_back(heights[i]);
-  }
-  if (sample.empty()) return;
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end());
-  const float median = *middle;
-  const auto limit = static_cast<float>(max_height);
-  for (float& height : heights) {
-    if (std::abs(height - median) > limit) height = kNone;
-  }
 }
 
 Cloud toCloud(const RasterImage& ortho, const Raster<float>& heights, int step) {
@@ -207,9 +122,11 @@ Cloud importOrthoDsm(const std::filesystem::path& ortho, const std::filesystem::
   checkOptions(options);
   const RasterImage image = readRaster(ortho, options.raster);
   const RasterHeights model = readHeights(dsm);
-  checkPlaces(image, model);
+  checkMetres(image.name, image.place);
+  checkMetres(model.name, model.place);
+  checkSameCrs(image.name, image.place, model.name, model.place);
   Raster<float> heights = sampleAll(image, model, options.step);
-  removeOutliers(heights, options.max_height);
+  removeFarHeights(heights, options.max_height);
   Cloud cloud = toCloud(image, heights, options.step);
   if (cloud.empty()) {
     throw InputError(

@@ -44,7 +44,9 @@ struct RegistrationOptions {
 };
 void describe(OptionTable& table, RegistrationOptions& options);
 
-/// Names of the presets: "default" measures best, "paper" is the paper's chain and parameters.
+/// Names of the presets: "default" measures best; "paper" is the paper's chain and parameters, with
+/// the moving map matched under several warps, which the range of errors that the paper reports
+/// needs; "paper-literal" is that chain with one flow from the guess as it is.
 std::vector<std::string> presetNames();
 /// Throws UsageError for an unknown name.
 RegistrationOptions preset(const std::string& name);

@@ -33,6 +33,34 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
   }
 }
 
+struct PointSum {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  PointSum& operator+=(const PointSum& other) {
+    sum += other.sum;
+    return *this;
+  }
+};
+
+/// Mean of the cloud's points in its file's coordinates.
+Eigen::Vector3d meanOf(const Cloud& cloud) {
+  if (cloud.xyz.empty()) return cloud.origin;
+  const PointSum total =
+      parallelSum<PointSum>(cloud.size(), 1U << 16, {}, [&](std::size_t begin, std::size_t end) {
+        PointSum part;
+        for (std::size_t i = begin; i < end; ++i) part.sum += cloud.xyz[i].cast<double>();
+        return part;
+      });
+  return cloud.origin + total.sum / static_cast<double>(cloud.size());
+}
+
+/// Where the guess says nothing about the place, the middles of the clouds are laid together, so
+/// that all that follows counts from there, however far apart the files' coordinates are.
+Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                             const PriorUncertainty& uncertainty) {
+  if (!uncertainty.anywhere()) return guess;
+  return Eigen::Translation3d(meanOf(fixed) - guess * meanOf(moving)) * guess;
+}
+
 PairFrames levelPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                      const LevelOptions& options) {
   // In double and about the origins, so that UTM coordinates cancel before anything is float.
@@ -195,14 +223,21 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   checkOptions(chosen);
   RegistrationOptions options = chosen;
   requireColours(fixed, moving, options);
+  if (options.prior.anywhere() && options.association == AssociationKind::kFlow) {
+    throw UsageError(
+        "the flow needs to know about where to look: give --prior-sigma with a translation, or use "
+        "--association correlation");
+  }
   if (options.geometry_only) {
     options.signal.term = DataTerm::kHeight;
     options.flow.describe.term = DataTerm::kHeight;
   }
   Registration result;
   // 1. Level (assumption 5: only the moving map's scale is in question).
-  result.frames =
-      times.run("level", [&] { return levelPair(fixed, moving, guess, options.level); });
+  result.frames = times.run("level", [&] {
+    return levelPair(fixed, moving, centredGuess(fixed, moving, guess, options.prior),
+                     options.level);
+  });
   // 2. Multimodal grid maps (Sec. III-A).
   times.run("grid", [&] { gridPair(fixed, moving, options, result); });
   const PoseRefinement refinement(result.fixed_map, result.moving_map, result.space, options);

@@ -130,6 +130,7 @@ Json residualsJson(const Registration& registration) {
   json["vertical"] = {{"status", toString(vertical.status)},
                       {"residual_m", number(vertical.residual)},
                       {"cells", vertical.cells},
+                      {"ground_share", number(vertical.ground_share)},
                       {"canopy_gain", number(vertical.canopy_gain)}};
   return json;
 }

@@ -20,22 +20,36 @@ namespace {
 constexpr double kStripMargin = 0.3;   // between strip and border of the field [m]
 constexpr double kHidingMargin = 0.5;  // canvas around the strip [m]
 
+/// Half the size of the box around a strip at this heading, with its border.
+Eigen::Vector2d halfBox(const UgvOptions& options, double heading) {
+  const double c = std::abs(std::cos(heading));
+  const double s = std::abs(std::sin(heading));
+  return {0.5 * (options.length * c + options.width * s) + kStripMargin,
+          0.5 * (options.length * s + options.width * c) + kStripMargin};
+}
+
 bool insideField(const Eigen::Vector2d& point, const Eigen::Vector2d& size) {
   return point.x() >= 0.0 && point.y() >= 0.0 && point.x() <= size.x() && point.y() <= size.y();
 }
 
 }  // namespace
 
+double stripHeading(const UgvOptions& options, double row_heading) {
+  return row_heading + options.heading_deg * std::numbers::pi / 180.0;
+}
+
+Eigen::Vector2d stripRoom(const UgvOptions& options, const Eigen::Vector2d& field_size,
+                          double heading) {
+  return field_size - 2.0 * halfBox(options, heading);
+}
+
 StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_size,
                       double row_heading, std::uint64_t seed) {
   Random random = Random::stream(seed, 9);
   StripPlace strip;
-  strip.heading = row_heading + options.heading_deg * std::numbers::pi / 180.0;
-  const double c = std::abs(std::cos(strip.heading));
-  const double s = std::abs(std::sin(strip.heading));
-  const Eigen::Vector2d half(0.5 * (options.length * c + options.width * s) + kStripMargin,
-                             0.5 * (options.length * s + options.width * c) + kStripMargin);
-  const Eigen::Vector2d room = field_size - 2.0 * half;
+  strip.heading = stripHeading(options, row_heading);
+  const Eigen::Vector2d half = halfBox(options, strip.heading);
+  const Eigen::Vector2d room = stripRoom(options, field_size, strip.heading);
   if (room.minCoeff() < 0.0) {
     throw UsageError(fmt::format(
         "a strip of {} x {} m at {:.0f} degrees does not fit into a field of {} x {} m; enlarge "
@@ -87,16 +101,19 @@ Visit driveOf(const ViewOptions& views, std::uint64_t seed) {
   return visit;
 }
 
-SimulatedPair assemblePair(const SimulationOptions& options, const StripPlace& strip,
-                           FieldPoints above, FieldPoints below, std::uint64_t seed) {
+Eigen::Vector3d madeUpBase(const GeotagOptions& options) {
+  return options.utm ? Eigen::Vector3d(352417.36, 4815306.82, 118.64) : Eigen::Vector3d::Zero();
+}
+
+SimulatedPair assemblePair(const SimulationOptions& options, const Eigen::Vector3d& base,
+                           const StripPlace& strip, FieldPoints above, FieldPoints below,
+                           std::uint64_t seed) {
   if (above.xyz.empty() || below.xyz.empty()) {
     throw UsageError(
         "the simulated sensors saw no point; raise uav.density, ugv.edge_density or "
         "ugv.camera_height");
   }
   SimulatedPair pair;
-  const Eigen::Vector3d base =
-      options.geotag.utm ? Eigen::Vector3d(352417.36, 4815306.82, 118.64) : Eigen::Vector3d::Zero();
   pair.uav.name = "simulated UAV cloud";
   pair.uav.origin = base;
   pair.uav.xyz = std::move(above.xyz);

@@ -14,6 +14,14 @@ struct StripPlace {
   double heading = 0.0;
 };
 
+/// Direction of travel in a field with rows in this direction [rad].
+double stripHeading(const UgvOptions& options, double row_heading);
+
+/// How much wider and higher the field is than the strip with its border [m]; negative where it
+/// does not fit.
+Eigen::Vector2d stripRoom(const UgvOptions& options, const Eigen::Vector2d& field_size,
+                          double heading);
+
 /// A random place inside a field of the given size, or overhanging its border by the share asked
 /// for. Throws UsageError when the strip does not fit.
 StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_size,
@@ -28,9 +36,14 @@ double uavCell(const SimulationOptions& options);
 Visit flightOf(const ViewOptions& views, std::uint64_t seed);
 Visit driveOf(const ViewOptions& views, std::uint64_t seed);
 
-/// Files, truth and affines from the points of both views. `above` is in the field frame, `below`
+/// Where the UAV file's coordinates begin in a field that is nowhere: like UTM, or at zero.
+Eigen::Vector3d madeUpBase(const GeotagOptions& options);
+
+/// Files, truth and affines from the points of both views. `base` is the field frame's zero in the
+/// UAV file's coordinates. `above` is in the field frame, `below`
 /// as senseFromGround gives it.
-SimulatedPair assemblePair(const SimulationOptions& options, const StripPlace& strip,
-                           FieldPoints above, FieldPoints below, std::uint64_t seed);
+SimulatedPair assemblePair(const SimulationOptions& options, const Eigen::Vector3d& base,
+                           const StripPlace& strip, FieldPoints above, FieldPoints below,
+                           std::uint64_t seed);
 
 }  // namespace agricolmap

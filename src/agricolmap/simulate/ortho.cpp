@@ -82,6 +82,8 @@ class OrthoScene {
 
   double width() const { return field_->gsd * field_->colour.cols(); }
   double height() const { return field_->gsd * field_->colour.rows(); }
+  /// What heights of the scene are counted from [m].
+  double zero() const { return zero_; }
 
   bool valid(const Eigen::Vector2d& point) const {
     const Eigen::Vector2d at = mosaic(point) / field_->gsd;
@@ -132,6 +134,7 @@ class OrthoScene {
   Raster<float> strength_;  ///< deviation of the texture finer than leaves, counts
   Raster<float> canopy_;    ///< above ground [m]
   Raster<float> ground_;    ///< [m]
+  double zero_ = 0.0;
 };
 
 void OrthoScene::makeUpHeights() {
@@ -198,6 +201,7 @@ void OrthoScene::splitHeights() {
   }
   // Absolute heights belong to the geotag.
   const float zero = ground_(rows / 2, cols / 2);
+  zero_ = static_cast<double>(zero);
   forRows([&](int r) {
     for (int c = 0; c < cols; ++c) {
       canopy_(r, c) = field_->height(r, c) - ground_(r, c);
@@ -307,6 +311,15 @@ Canvas OrthoScene::draw(const Window& window, const Visit& visit, double own) co
 StripPlace placeOnMosaic(const OrthoField& field, const OrthoScene& scene,
                          const SimulationOptions& options) {
   const Eigen::Vector2d size(scene.width(), scene.height());
+  const double heading = stripHeading(options.ugv, field.row_heading);
+  if (stripRoom(options.ugv, size, heading).minCoeff() < 0.0) {
+    throw InputError(fmt::format(
+        "{}: {:.1f} x {:.1f} m of it are too small for a strip of {} x {} m at {:.0f} degrees; "
+        "shorten ugv.length and ugv.width, change ugv.heading_deg, or take more of the mosaic: "
+        "field.width and field.height or --window",
+        field.name, size.x(), size.y(), options.ugv.length, options.ugv.width,
+        heading * 57.29577951308232));
+  }
   for (std::uint64_t attempt = 0; attempt < 500; ++attempt) {
     const StripPlace strip =
         placeStrip(options.ugv, size, field.row_heading, hashBits(seedOf(options, 4), attempt));
@@ -358,8 +371,12 @@ SimulatedPair simulateFromOrtho(const OrthoField& field, const SimulationOptions
   lightCanvas(canvas, sunDirection(drive.solar_hour),
               1.0 - 0.5 * moved * (1.0 - options.views.overcast));
   FieldPoints below = senseFromGround(canvas, options.ugv, seedOf(options, 7));
+  Eigen::Vector3d base = madeUpBase(options.geotag);
+  if (options.geotag.utm && field.corner) {
+    base << *field.corner, scene.zero();
+  }
   SimulatedPair pair =
-      assemblePair(options, strip, std::move(above), std::move(below), seedOf(options, 8));
+      assemblePair(options, base, strip, std::move(above), std::move(below), seedOf(options, 8));
   pair.row_heading = field.row_heading;
   pair.overlaps = !options.other_field;
   return pair;

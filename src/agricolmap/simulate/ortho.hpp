@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "agricolmap/core/raster.hpp"
@@ -12,9 +13,11 @@ namespace agricolmap {
 
 /// A real orthomosaic. Row 0 is the southernmost. Rasters other than `colour` may be empty.
 struct OrthoField {
-  std::string name;            ///< for messages
-  double gsd = 0.01;           ///< ground sampling distance [m]
-  double row_heading = 0.0;    ///< direction of the plant rows from the raster's x axis [rad]
+  std::string name;          ///< for messages
+  double gsd = 0.01;         ///< ground sampling distance [m]
+  double row_heading = 0.0;  ///< direction of the plant rows from the raster's x axis [rad]
+  /// South-west corner in projected coordinates [m]; nothing where the mosaic has none.
+  std::optional<Eigen::Vector2d> corner;
   Raster<Rgb> colour;          ///< true colours: green plants
   Raster<std::uint8_t> valid;  ///< 0 = no data; empty: all valid
   Raster<float> height;        ///< surface [m]; empty: made up from greenness and simulated soil
@@ -26,8 +29,9 @@ struct OrthoField {
 /// orthomosaic as it is. The drive sees it with `leaf_unshared` of the variance of its texture
 /// below 3 cm replaced, moved by the wind, and lit from elsewhere; `growth` acts on heights,
 /// `weeds_pulled` on nothing. For `other_field`, the strip is cut from the mosaic mirrored across
-/// its rows. Throws InputError when the rasters do not fit each other or hold no valid place for
-/// the strip.
+/// its rows. With GeotagOptions::utm, the UAV file has the mosaic's coordinates where it has any,
+/// and heights as the surface model has them.
+/// Throws InputError when the rasters do not fit each other or hold no valid place for the strip.
 SimulatedPair simulateFromOrtho(const OrthoField& field, const SimulationOptions& options);
 
 }  // namespace agricolmap

@@ -59,6 +59,43 @@ TEST(SimulateFromOrtho, RefusesRastersThatDoNotFit) {
   EXPECT_THROW(simulateFromOrtho(field, stripOptions()), InputError);
 }
 
+TEST(SimulateFromOrtho, SaysWhenTheMosaicIsTooSmallForTheStrip) {
+  SimulationOptions options = stripOptions();
+  options.ugv.length = 9.0;
+  try {
+    simulateFromOrtho(stripedField(), options);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("made-up mosaic"), std::string::npos) << what;
+    EXPECT_NE(what.find("ugv.length"), std::string::npos) << what;
+  }
+}
+
+TEST(SimulateFromOrtho, KeepsTheCoordinatesOfTheMosaic) {
+  OrthoField field = stripedField();
+  field.corner = Eigen::Vector2d(734337.25, 4489012.5);
+  field.height = Raster<float>(600, 700);
+  for (int r = 0; r < 600; ++r) {
+    for (int c = 0; c < 700; ++c) {
+      field.height(r, c) = 303.0F + (field.colour(r, c).g > 120 ? 0.15F : 0.0F);
+    }
+  }
+  SimulationOptions options = stripOptions();
+  const SimulatedPair there = simulateFromOrtho(field, options);
+  const Eigen::Vector3d lowest = there.uav.origin + boundingBox(there.uav).min.cast<double>();
+  EXPECT_NEAR(lowest.x(), 734337.25, 0.03);
+  EXPECT_NEAR(lowest.y(), 4489012.5, 0.03);
+  EXPECT_NEAR(lowest.z(), 303.0, 0.1);
+  EXPECT_NEAR(there.truth.front().z(), 303.1, 0.2);
+  options.geotag.utm = false;
+  const SimulatedPair here = simulateFromOrtho(field, options);
+  EXPECT_EQ(here.uav.xyz, there.uav.xyz);
+  EXPECT_EQ(here.uav.origin, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d moved = there.truth.front() - here.truth.front();
+  EXPECT_NEAR((moved - there.uav.origin).norm(), 0.0, 1e-6);
+}
+
 TEST(SimulateFromOrtho, SameBitsOnAnyNumberOfThreads) {
   const OrthoField field = stripedField();
   const auto run = [&](int threads) {

@@ -48,8 +48,8 @@ SimulatedPair simulatePair(const SimulationOptions& options) {
   }
   FieldPoints below =
       senseFromGround(renderVisit(driven, drive, window), options.ugv, seedOf(options, 7));
-  SimulatedPair pair =
-      assemblePair(options, strip, std::move(above), std::move(below), seedOf(options, 8));
+  SimulatedPair pair = assemblePair(options, madeUpBase(options.geotag), strip, std::move(above),
+                                    std::move(below), seedOf(options, 8));
   pair.row_heading = field.rowHeading();
   pair.overlaps = !options.other_field;
   return pair;

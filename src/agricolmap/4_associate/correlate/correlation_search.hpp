@@ -1,7 +1,7 @@
 // A global search for the moving map: every heading and pair of scales that the initial guess
 // leaves open, each over all shifts at once. Follows recipe E of the research notes, with the
 // strip cut into blocks: a block tolerates coarse steps of heading and scale, so the expensive
-// correlations are few and the fine hypotheses are sums of shifted block scores.
+// correlations are few; the fine hypotheses are looked at where the blocks together promise much.
 #pragma once
 
 #include "agricolmap/4_associate/association.hpp"
@@ -14,6 +14,8 @@ struct CorrelationOptions {
   double tolerance = 0.5;   ///< RMS displacement that hypotheses may leave [cells]
   double block = 2.2;       ///< side of the blocks the moving map is cut into [m]
   int max_blocks = 10;      ///< of the most textured ones
+  int peaks = 16;           ///< places looked at more closely, per coarse hypothesis
+  double min_inside = 0.4;  ///< least share of the blocks inside the fixed map
   int climbs = 64;          ///< placements of the lattice from which the score is climbed
   int candidates = 8;       ///< placements handed on
   double separation = 0.3;  ///< placements whose corners differ by less are one [m]

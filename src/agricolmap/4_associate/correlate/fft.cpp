@@ -113,7 +113,7 @@ void transpose(ComplexRaster& data, ComplexRaster& scratch, int rows, int cols) 
 
 }  // namespace
 
-BatchFft::BatchFft(int length, int batch) : batch_(batch) {
+BatchFft::BatchFft(int length) {
   int remaining = length;
   int stride = 1;
   while (remaining > 1) {
@@ -137,11 +137,12 @@ BatchFft::BatchFft(int length, int batch) : batch_(batch) {
   }
 }
 
-void BatchFft::transform(ComplexRaster& data, ComplexRaster& scratch, bool forward) const {
+void BatchFft::transform(ComplexRaster& data, ComplexRaster& scratch, int batch,
+                         bool forward) const {
   const float sign = forward ? -1.0F : 1.0F;
   for (const Pass& pass : passes_) {
     const int parts = pass.remaining / pass.radix;
-    const std::size_t run = static_cast<std::size_t>(pass.stride) * batch_;
+    const std::size_t run = static_cast<std::size_t>(pass.stride) * batch;
     for (int p = 0; p < parts; ++p) {
       Butterfly b{};
       b.count = run;
@@ -174,8 +175,7 @@ void BatchFft::transform(ComplexRaster& data, ComplexRaster& scratch, bool forwa
   }
 }
 
-Fft2::Fft2(int rows, int cols)
-    : rows_(rows), cols_(cols), along_rows_(rows, cols), along_cols_(cols, rows) {}
+Fft2::Fft2(int rows, int cols) : rows_(rows), cols_(cols), along_rows_(rows), along_cols_(cols) {}
 
 int Fft2::goodSize(int n) {
   for (int size = std::max(1, n);; ++size) {
@@ -188,15 +188,33 @@ int Fft2::goodSize(int n) {
 }
 
 void Fft2::forward(ComplexRaster& data, ComplexRaster& scratch) const {
-  along_rows_.transform(data, scratch, true);
+  along_rows_.transform(data, scratch, cols_, true);
   transpose(data, scratch, rows_, cols_);
-  along_cols_.transform(data, scratch, true);
+  along_cols_.transform(data, scratch, rows_, true);
+}
+
+void Fft2::forwardPiece(ComplexRaster& piece, ComplexRaster& piece_scratch, int width,
+                        int first_col, ComplexRaster& spectrum, ComplexRaster& scratch) const {
+  along_rows_.transform(piece, piece_scratch, width, true);
+  std::fill(spectrum.re.begin(), spectrum.re.end(), 0.0F);
+  std::fill(spectrum.im.begin(), spectrum.im.end(), 0.0F);
+  for (int c = 0; c < width; ++c) {
+    const int col = ((first_col + c) % cols_ + cols_) % cols_;
+    float* re = spectrum.re.data() + static_cast<std::size_t>(col) * rows_;
+    float* im = spectrum.im.data() + static_cast<std::size_t>(col) * rows_;
+    for (int r = 0; r < rows_; ++r) {
+      const std::size_t i = static_cast<std::size_t>(r) * width + c;
+      re[r] += piece.re[i];
+      im[r] += piece.im[i];
+    }
+  }
+  along_cols_.transform(spectrum, scratch, rows_, true);
 }
 
 void Fft2::inverse(ComplexRaster& data, ComplexRaster& scratch) const {
-  along_cols_.transform(data, scratch, false);
+  along_cols_.transform(data, scratch, rows_, false);
   transpose(data, scratch, cols_, rows_);
-  along_rows_.transform(data, scratch, false);
+  along_rows_.transform(data, scratch, cols_, false);
   const float scale = 1.0F / static_cast<float>(size());
   for (float& v : data.re) v *= scale;
   for (float& v : data.im) v *= scale;

@@ -18,13 +18,14 @@ struct ComplexRaster {
   std::size_t size() const { return re.size(); }
 };
 
-/// One axis: length n, over `batch` interleaved sequences (element k of sequence b at k·batch + b).
-/// Stockham's self-sorting scheme with radices 4, 3, 5 and 2.
+/// One axis of length n, over `batch` interleaved sequences (element k of sequence b at
+/// k·batch + b). Stockham's self-sorting scheme with radices 4, 3, 5 and 2.
 class BatchFft {
  public:
-  BatchFft(int length, int batch);
-  /// exp(−2πi…) when forward, exp(+2πi…) otherwise; not scaled. `scratch` is as large as `data`.
-  void transform(ComplexRaster& data, ComplexRaster& scratch, bool forward) const;
+  explicit BatchFft(int length);
+  /// exp(−2πi…) when forward, exp(+2πi…) otherwise; not scaled. `data` and `scratch` hold at least
+  /// length · batch elements, and the result may be in either's former memory.
+  void transform(ComplexRaster& data, ComplexRaster& scratch, int batch, bool forward) const;
 
  private:
   struct Pass {
@@ -33,7 +34,6 @@ class BatchFft {
     int stride;                   ///< how many of them are interleaved
     std::vector<float> cos, sin;  ///< twiddles [p · radix + j], p < remaining / radix
   };
-  int batch_;
   std::vector<Pass> passes_;
 };
 
@@ -49,14 +49,19 @@ class Fft2 {
   std::size_t size() const { return static_cast<std::size_t>(rows_) * cols_; }
   /// rows × cols → spectrum stored cols × rows. Not scaled.
   void forward(ComplexRaster& data, ComplexRaster& scratch) const;
+  /// The same for data that is zero but for a small piece: `piece` is rows × width, row-major, and
+  /// stands in the columns first_col, first_col + 1, … (modulo cols). Costs little more than half.
+  /// `piece` and `piece_scratch` are overwritten.
+  void forwardPiece(ComplexRaster& piece, ComplexRaster& piece_scratch, int width, int first_col,
+                    ComplexRaster& spectrum, ComplexRaster& scratch) const;
   /// Spectrum stored cols × rows → rows × cols, scaled by 1/(rows·cols).
   void inverse(ComplexRaster& data, ComplexRaster& scratch) const;
 
  private:
   int rows_;
   int cols_;
-  BatchFft along_rows_;  ///< over the row index, batch = cols
-  BatchFft along_cols_;  ///< over the column index of the transposed data, batch = rows
+  BatchFft along_rows_;  ///< over the row index
+  BatchFft along_cols_;  ///< over the column index of the transposed data
 };
 
 }  // namespace agricolmap

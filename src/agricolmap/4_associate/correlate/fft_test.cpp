@@ -53,5 +53,27 @@ TEST(Fft, MatchesTheDefinition) {
   }
 }
 
+TEST(Fft, APieceIsTransformedAsTheWhole) {
+  const int rows = 20, cols = 12, width = 5, first_col = -2;
+  const Fft2 fft(rows, cols);
+  Random random(6);
+  ComplexRaster whole(fft.size()), scratch(fft.size()), spectrum(fft.size());
+  ComplexRaster piece(static_cast<std::size_t>(rows * width)), small(piece.size());
+  for (int r = 3; r < 9; ++r) {
+    for (int c = 0; c < width; ++c) {
+      const auto i = static_cast<std::size_t>(r * width + c);
+      const auto j = static_cast<std::size_t>(r * cols + (first_col + c + cols) % cols);
+      whole.re[j] = piece.re[i] = static_cast<float>(random.normal());
+      whole.im[j] = piece.im[i] = static_cast<float>(random.normal());
+    }
+  }
+  fft.forward(whole, scratch);
+  fft.forwardPiece(piece, small, width, first_col, spectrum, scratch);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    ASSERT_NEAR(spectrum.re[i], whole.re[i], 1e-4);
+    ASSERT_NEAR(spectrum.im[i], whole.im[i], 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace agricolmap

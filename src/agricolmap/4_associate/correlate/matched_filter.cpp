@@ -91,34 +91,67 @@ MatchedFilter::MatchedFilter(const SignalMap& fixed, const MatchedFilterOptions&
   deviation_ = std::sqrt(0.5 * sum2 / static_cast<double>(map.size()));
 }
 
-void MatchedFilter::correlate(const Template& piece, ComplexRaster& surface,
-                              ComplexRaster& scratch) const {
-  std::fill(surface.re.begin(), surface.re.end(), 0.0F);
-  std::fill(surface.im.begin(), surface.im.end(), 0.0F);
+void MatchedFilter::multiply(const Template& piece, ComplexRaster& product, Work& work) const {
   const int rows = fft_.rows();
-  const int cols = fft_.cols();
+  const int width = std::max(1, piece.re.cols());
+  const std::size_t size = static_cast<std::size_t>(rows) * width;
+  for (ComplexRaster* buffer : {&work.piece, &work.piece_scratch}) {
+    buffer->re.assign(size, 0.0F);
+    buffer->im.assign(size, 0.0F);
+  }
   for (int r = 0; r < piece.re.rows(); ++r) {
     const int row = ((r + piece.first_row) % rows + rows) % rows;
     for (int c = 0; c < piece.re.cols(); ++c) {
-      const int col = ((c + piece.first_col) % cols + cols) % cols;
-      const std::size_t i = static_cast<std::size_t>(row) * cols + col;
-      surface.re[i] += piece.re(r, c);
-      surface.im[i] += piece.im(r, c);
+      const std::size_t i = static_cast<std::size_t>(row) * width + c;
+      work.piece.re[i] += piece.re(r, c);
+      work.piece.im[i] += piece.im(r, c);
     }
   }
-  fft_.forward(surface, scratch);
-  float* re = surface.re.data();
-  float* im = surface.im.data();
+  fft_.forwardPiece(work.piece, work.piece_scratch, width, piece.first_col, product, work.scratch);
+  float* re = product.re.data();
+  float* im = product.im.data();
   const float* wr = whitened_.re.data();
   const float* wi = whitened_.im.data();
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < surface.size(); ++i) {
+  for (std::size_t i = 0; i < product.size(); ++i) {
     const float a = re[i] * wr[i] + im[i] * wi[i];
     const float b = re[i] * wi[i] - im[i] * wr[i];
     re[i] = a;
     im[i] = b;
   }
-  fft_.inverse(surface, scratch);
+}
+
+void MatchedFilter::correlate(const Template& first, const Template& second, ComplexRaster& surface,
+                              Work& work) const {
+  multiply(first, work.first, work);
+  multiply(second, work.second, work);
+  // The real part of each result has the Hermitian part of its spectrum; as real and imaginary part
+  // of one raster both come back by one transform.
+  const int rows = fft_.rows();
+  const int cols = fft_.cols();
+  for (int c = 0; c < cols; ++c) {
+    const std::size_t here = static_cast<std::size_t>(c) * rows;
+    const std::size_t there = static_cast<std::size_t>((cols - c) % cols) * rows;
+    const auto combine = [&](std::size_t k, std::size_t m) {
+      const float ar = 0.5F * (work.first.re[k] + work.first.re[m]);
+      const float ai = 0.5F * (work.first.im[k] - work.first.im[m]);
+      const float br = 0.5F * (work.second.re[k] + work.second.re[m]);
+      const float bi = 0.5F * (work.second.im[k] - work.second.im[m]);
+      surface.re[k] = ar - bi;
+      surface.im[k] = ai + br;
+    };
+    combine(here, there);
+    for (int r = 1; r < rows; ++r) {
+      combine(here + static_cast<std::size_t>(r), there + static_cast<std::size_t>(rows - r));
+    }
+  }
+  fft_.inverse(surface, work.scratch);
+}
+
+void MatchedFilter::correlate(const Template& piece, ComplexRaster& surface, Work& work) const {
+  multiply(piece, surface, work);
+  fft_.inverse(surface, work.scratch);
+  std::fill(surface.im.begin(), surface.im.end(), 0.0F);
 }
 
 }  // namespace agricolmap

@@ -37,9 +37,19 @@ class MatchedFilter {
  public:
   MatchedFilter(const SignalMap& fixed, const MatchedFilterOptions& options);
 
-  /// Score of the template's anchor at every cell of the fixed map, as `surface.re` of size
-  /// `fft().rows() × fft().cols()`, row-major; `surface` and `scratch` are work space.
-  void correlate(const Template& piece, ComplexRaster& surface, ComplexRaster& scratch) const;
+  /// Buffers of one correlation at a time.
+  struct Work {
+    explicit Work(const MatchedFilter& filter)
+        : first(filter.fft().size()), second(filter.fft().size()), scratch(filter.fft().size()) {}
+    ComplexRaster first, second, scratch, piece, piece_scratch;
+  };
+  /// Scores of two templates' anchors at every cell of the fixed map: `surface.re` and `surface.im`
+  /// of size `fft().rows() × fft().cols()`, row-major. Two at once cost little more than one: each
+  /// score is real. Correlation is circular.
+  void correlate(const Template& first, const Template& second, ComplexRaster& surface,
+                 Work& work) const;
+  /// One template alone; `surface.im` is 0.
+  void correlate(const Template& piece, ComplexRaster& surface, Work& work) const;
 
   const Fft2& fft() const { return fft_; }
   const GridFrame& frame() const { return frame_; }
@@ -51,6 +61,9 @@ class MatchedFilter {
   double whitenedDeviation() const { return deviation_; }
 
  private:
+  /// conj(template) · whitened map, both spectra.
+  void multiply(const Template& piece, ComplexRaster& product, Work& work) const;
+
   GridFrame frame_;
   MatchedFilterOptions options_;
   Fft2 fft_;

@@ -3,25 +3,10 @@
 
 #include <vector>
 
-#include "agricolmap/4_associate/correlate/hypotheses.hpp"
+#include "agricolmap/4_associate/correlate/candidates.hpp"
 #include "agricolmap/4_associate/correlate/matched_filter.hpp"
 
 namespace agricolmap {
-
-/// A hypothesis with the shift that fits it best somewhere.
-struct Candidate {
-  Hypothesis hypothesis;
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< of the search space's centre [m]
-  double score = 0.0;                               ///< larger is better
-};
-
-/// Where a candidate puts a point of the moving map.
-inline Eigen::Affine2d poseOf(const Candidate& candidate, const SearchSpace& space) {
-  Eigen::Affine2d pose = Eigen::Affine2d::Identity();
-  pose.linear() = linearOf(candidate.hypothesis, space.scale_axes);
-  pose.translation() = space.centre + candidate.shift - pose.linear() * space.centre;
-  return pose;
-}
 
 /// Climbs the whitened score of the whole moving map, which costs one look per cell: the score is
 /// the sum over its cells of their values times the whitened fixed map where the pose puts them.

@@ -1,0 +1,126 @@
+#include "ortho_arguments.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "agricolmap/config/text.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/simulate/row_heading.hpp"
+
+namespace agricolmap {
+namespace {
+
+constexpr const char* kGroup = "Instead of a simulated crop: a real orthomosaic";
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// The plants are the mosaic's.
+constexpr const char* kLayout[] = {
+    "field.row_spacing", "field.plant_spacing", "field.plant_jitter", "field.lateral_jitter",
+    "field.gaps",        "field.gap_length",    "field.row_wobble",   "field.pass_rows",
+    "field.pass_error",  "field.weeds",         "field.straw",        "field.tramline_spacing",
+    "field.size_spread", "field.ridge",         "views.weeds_pulled", "field.growth_gradient"};
+/// The heights are the surface model's.
+constexpr const char* kRelief[] = {"field.relief", "field.slope", "field.clods",
+                                   "field.plant_size"};
+
+}  // namespace
+
+void OrthoArguments::addTo(CLI::App& command) {
+  command.add_option("--ortho", ortho_, "Orthomosaic: GeoTIFF, PNG, ... whose plants are taken")
+      ->group(kGroup);
+  command.add_option("--dsm", dsm_, "Its surface model; without: heights are made up")
+      ->group(kGroup);
+  command.add_option("--dtm", dtm_, "Its terrain model; without: the lowest surface around")
+      ->group(kGroup);
+  command
+      .add_option("--window", window_,
+                  "COL ROW COLS ROWS: take these pixels, counted from the top left; without: "
+                  "field.width x field.height m where --seed says")
+      ->expected(4)
+      ->group(kGroup);
+  command
+      .add_option("--row_heading", row_heading_,
+                  "DEGREES counter-clockwise from east in which the rows run; without: measured")
+      ->expected(1)
+      ->check(CLI::Range(-360.0, 360.0))
+      ->group(kGroup);
+  OrthoFileOptions defaults;
+  flags_.addTo(command, optionTable(defaults), kGroup);
+}
+
+bool OrthoArguments::given(const OptionFlags& flags) const {
+  if (ortho_.empty()) {
+    if (!dsm_.empty() || !dtm_.empty() || !window_.empty() || !row_heading_.empty() ||
+        flags_.anyGiven()) {
+      throw UsageError(
+          "--dsm, --dtm, --window, --row_heading, --gsd, --bands and --black_is_nodata describe an "
+          "orthomosaic; give it, too: --ortho FILE");
+    }
+    return false;
+  }
+  const auto refuse = [&](const char* path, const char* why) {
+    if (flags.given(path)) {
+      throw UsageError(fmt::format("--{} does nothing with --ortho: {}", path, why));
+    }
+  };
+  for (const char* path : kLayout) refuse(path, "the plants are those of the mosaic");
+  if (!dsm_.empty()) {
+    for (const char* path : kRelief) refuse(path, "the heights are those of the surface model");
+  }
+  return true;
+}
+
+PixelWindow OrthoArguments::windowFor(const SimulationOptions& options) const {
+  if (!window_.empty()) return {window_[0], window_[1], window_[2], window_[3]};
+  return chooseWindow(ortho_, file_options_, options.field.width, options.field.height,
+                      static_cast<std::uint64_t>(options.seed));
+}
+
+SimulatedPair OrthoArguments::simulate(SimulationOptions& options) {
+  flags_.apply(optionTable(file_options_));
+  const PixelWindow window = windowFor(options);
+  window_ = {window.col, window.row, window.cols, window.rows};
+  OrthoField field = readOrtho({ortho_, dsm_, dtm_}, file_options_, window);
+  file_options_.gsd = field.gsd;
+  spdlog::info("{}: {:.1f} x {:.1f} m with pixels of {:.5g} m: --window {}", ortho_,
+               field.gsd * field.colour.cols(), field.gsd * field.colour.rows(), field.gsd,
+               fmt::join(window_, " "));
+  if (!row_heading_.empty()) {
+    options.field.random_row_heading = false;
+    options.field.row_heading_deg = row_heading_.front();
+  } else if (options.field.random_row_heading) {
+    options.field.random_row_heading = false;
+    // To hundredths, as it is reported, so that the report makes the same pair.
+    options.field.row_heading_deg =
+        std::round(100.0 * findRowHeading(field) / kDegree) / 100.0 + 0.0;
+    spdlog::info("{}: the rows run at {:.2f} degrees", ortho_, options.field.row_heading_deg);
+  }
+  field.row_heading = options.field.row_heading_deg * kDegree;
+  if (options.uav.gsd < field.gsd) {
+    spdlog::info("uav.gsd is {:.5g} m instead of {:.5g} m: the mosaic is no finer", field.gsd,
+                 options.uav.gsd);
+    options.uav.gsd = field.gsd;
+  }
+  return simulateFromOrtho(field, options);
+}
+
+std::string OrthoArguments::provenance() const {
+  std::string text = fmt::format("# Made from --ortho {}", ortho_);
+  if (!dsm_.empty()) text += fmt::format(" --dsm {}", dsm_);
+  if (!dtm_.empty()) text += fmt::format(" --dtm {}", dtm_);
+  text += fmt::format(" --window {}", fmt::join(window_, " "));
+  OrthoFileOptions shown = file_options_;
+  const OptionTable table = optionTable(shown);
+  for (const OptionField& field : table.fields()) {
+    text += fmt::format(" --{} {}", field.path, optionText(field));
+  }
+  std::replace(text.begin(), text.end(), '\n', ' ');  // of a file's name: still a comment
+  return text + "\n# with the options below; heights and plants are the mosaic's, not field.*\n";
+}
+
+}  // namespace agricolmap

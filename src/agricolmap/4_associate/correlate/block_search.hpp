@@ -1,0 +1,60 @@
+// Where does the strip fit under one coarse hypothesis of heading and scales, and under the finer
+// ones near to it?
+//
+// The strip is cut into blocks, small enough to tolerate the coarse step, and each is correlated
+// with the whole map once. Under a finer hypothesis a block's place differs from the coarse one's
+// by a few cells; the largest score within those cells, summed over the blocks, is an upper bound
+// for all of them at once. Only where that bound is high are the finer hypotheses looked at, one by
+// one.
+#pragma once
+
+#include <vector>
+
+#include "agricolmap/4_associate/correlate/candidates.hpp"
+#include "agricolmap/4_associate/correlate/matched_filter.hpp"
+
+namespace agricolmap {
+
+class BlockSearch {
+ public:
+  /// `peaks`: places per coarse hypothesis at which the finer ones are looked at. `min_inside`:
+  /// least share of the blocks whose middles lie in the map. All references must outlive this.
+  BlockSearch(const SignalMap& moving, const MatchedFilter& filter, const SearchSpace& space,
+              const StripFrame& strip, std::vector<Block> blocks, int peaks, double min_inside);
+
+  /// The best of `fine` at each of the places. Scores: sum of the blocks' scores over the deviation
+  /// of such a sum by chance, so that strips partly beyond the map's edge compare with others.
+  std::vector<Candidate> run(const Hypothesis& coarse, const std::vector<Hypothesis>& fine) const;
+
+ private:
+  /// Score of a block's middle at each cell of the map, and its deviation there.
+  struct Surface {
+    Raster<float> score;
+    double variance = 0.0;
+  };
+  /// Cells (col, row) by which blocks differ from the strip's middle.
+  using Offsets = std::vector<Eigen::Vector2i>;
+  struct Peak {
+    float score;
+    Eigen::Vector2i shift;  ///< (col, row) of the search space's centre [cells]
+  };
+
+  std::vector<Surface> correlate(const Eigen::Matrix2d& linear) const;
+  Offsets offsetsOf(const Hypothesis& hypothesis) const;
+  std::vector<Peak> boundPeaks(const std::vector<Surface>& bounds, const Offsets& offsets) const;
+  Candidate bestNear(const Peak& peak, const std::vector<Hypothesis>& fine,
+                     const std::vector<Offsets>& fine_offsets,
+                     const std::vector<Surface>& surfaces) const;
+
+  const SignalMap& moving_;
+  const MatchedFilter& filter_;
+  const SearchSpace& space_;
+  const StripFrame& strip_;
+  std::vector<Block> blocks_;
+  int peaks_;
+  double min_inside_;
+  Eigen::AlignedBox2i shifts_;  ///< (col, row) that the guess and the map allow [cells]
+  double radius_;               ///< and their largest length [cells]
+};
+
+}  // namespace agricolmap

@@ -1,0 +1,68 @@
+// Small rasters for tests, written through GDAL.
+#pragma once
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "agricolmap/core/error.hpp"
+
+namespace agricolmap::test {
+
+/// What to put into a small raster. Values by (band from 0, col, row).
+struct Sheet {
+  int cols = 8;
+  int rows = 6;
+  int bands = 3;
+  GDALDataType type = GDT_Byte;
+  std::array<double, 6> place{500000.0, 0.5, 0.0, 5000000.0, 0.0, -0.5};
+  int epsg = 32632;  ///< 0: none
+  std::optional<double> nodata = {};
+  bool alpha = false;  ///< the last band is alpha
+  std::function<double(int, int, int)> value = [](int band, int col, int row) {
+    return 10.0 * (band + 1) + col + row;
+  };
+  std::string driver = "GTiff";
+  bool georeferenced = true;
+};
+
+inline std::filesystem::path writeSheet(const std::filesystem::path& path, const Sheet& sheet) {
+  GDALAllRegister();
+  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(sheet.driver.c_str());
+  const GDALDatasetUniquePtr dataset(
+      driver->Create(path.c_str(), sheet.cols, sheet.rows, sheet.bands, sheet.type, nullptr));
+  if (!dataset) throw OutputError("GDAL cannot write " + path.string());
+  if (sheet.georeferenced) {
+    std::array<double, 6> place = sheet.place;
+    dataset->SetGeoTransform(place.data());
+  }
+  if (sheet.epsg != 0) {
+    OGRSpatialReference crs;
+    crs.importFromEPSG(sheet.epsg);
+    dataset->SetSpatialRef(&crs);
+  }
+  for (int b = 0; b < sheet.bands; ++b) {
+    GDALRasterBand* const band = dataset->GetRasterBand(b + 1);
+    if (sheet.nodata) band->SetNoDataValue(*sheet.nodata);
+    if (sheet.alpha && b == sheet.bands - 1) band->SetColorInterpretation(GCI_AlphaBand);
+    std::vector<double> line(static_cast<std::size_t>(sheet.cols));
+    for (int row = 0; row < sheet.rows; ++row) {
+      for (int col = 0; col < sheet.cols; ++col) {
+        line[static_cast<std::size_t>(col)] = sheet.value(b, col, row);
+      }
+      if (band->RasterIO(GF_Write, 0, row, sheet.cols, 1, line.data(), sheet.cols, 1, GDT_Float64,
+                         0, 0, nullptr) != CE_None) {
+        throw OutputError("GDAL cannot write " + path.string());
+      }
+    }
+  }
+  return path;
+}
+
+}  // namespace agricolmap::test

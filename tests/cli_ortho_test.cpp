@@ -1,0 +1,164 @@
+// `agricolmap simulate --ortho`: pairs from real mosaics, here made up by the test.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "agricolmap/io/raster_test_support.hpp"
+#include "support/cli_fixture.hpp"
+
+namespace agricolmap::test {
+namespace {
+
+constexpr double kEast = 734000.0;
+constexpr double kNorth = 4489000.0;
+
+/// Repeatable noise in [0, 1).
+double hash(int a, int b) {
+  const double value = std::sin(12.9898 * a + 78.233 * b) * 43758.5453;
+  return value - std::floor(value);
+}
+
+/// Height of a plant above the ground at metres from the south-west corner: plants of different
+/// sizes along rows that run east, some missing.
+double plantAt(double x, double y) {
+  const int row = static_cast<int>(std::floor(y / 0.5));
+  const int first = static_cast<int>(std::floor(x / 0.18));
+  double highest = 0.0;
+  for (int i = first - 1; i <= first + 1; ++i) {
+    if (hash(i, row) < 0.2) continue;
+    const double size = 0.06 + 0.06 * hash(i, row + 1000);
+    const double dx = x - 0.18 * (i + 0.3 + 0.4 * hash(i, row + 2000));
+    const double dy = y - 0.5 * (row + 0.5) - 0.06 * (hash(i, row + 3000) - 0.5);
+    highest = std::max(highest, size * (1.0 - (dx * dx + dy * dy) / (size * size)));
+  }
+  return highest;
+}
+
+class OrthoTest : public CliTest {
+ protected:
+  /// `width` × `height` m of 1.5 cm pixels in UTM.
+  std::string writeMosaic(const std::string& name, double width, double height,
+                          bool georeferenced = true) const {
+    Sheet sheet = sheetOf(width, height, 0.015);
+    sheet.georeferenced = georeferenced;
+    if (!georeferenced) sheet.epsg = 0;
+    sheet.value = [height](int band, int col, int row) {
+      const bool plant = plantAt(0.015 * (col + 0.5), height - 0.015 * (row + 0.5)) > 0.01;
+      const double shade = 30.0 * hash(col, row) - 15.0;
+      const double colours[2][3] = {{125.0, 105.0, 90.0}, {65.0, 125.0, 50.0}};
+      return colours[plant ? 1 : 0][band] + shade;
+    };
+    return writeSheet(inFolder(name), sheet);
+  }
+  /// Heights above 300 m, of a coarser raster that reaches further.
+  std::string writeModel(const std::string& name, double width, double height, bool plants,
+                         double east = 0.0) const {
+    Sheet sheet = sheetOf(width + 2.0, height + 2.0, 0.02);
+    sheet.place[0] += east - 1.0;
+    sheet.place[3] -= 1.0;
+    sheet.bands = 1;
+    sheet.type = GDT_Float32;
+    sheet.value = [=](int, int col, int row) {
+      const double x = 0.02 * (col + 0.5) - 1.0;
+      const double y = height + 1.0 - 0.02 * (row + 0.5);
+      return 300.0 + 0.01 * x + (plants ? plantAt(x, y) : 0.0);
+    };
+    return writeSheet(inFolder(name), sheet);
+  }
+
+  static std::vector<std::string> simulate(const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"simulate", "--crop", "sugar_beet_10m", "--ugv.length", "6"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+ private:
+  static Sheet sheetOf(double width, double height, double pixel) {
+    Sheet sheet;
+    sheet.cols = static_cast<int>(std::lround(width / pixel));
+    sheet.rows = static_cast<int>(std::lround(height / pixel));
+    sheet.place = {kEast, pixel, 0.0, kNorth + height, 0.0, -pixel};
+    return sheet;
+  }
+};
+
+TEST_F(OrthoTest, APairWithASurfaceModelRegistersToTheTruth) {
+  const std::string ortho = writeMosaic("ortho.tif", 11.0, 8.0);
+  const std::string dsm = writeModel("dsm.tif", 11.0, 8.0, true);
+  const std::string dtm = writeModel("dtm.tif", 11.0, 8.0, false);
+  const ProgramResult made = runAgricolmap(
+      simulate({"--ortho", ortho, "--dsm", dsm, "--dtm", dtm, "-o", inFolder("pair")}));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.err.find("the rows run at"), std::string::npos) << made.err;
+  EXPECT_EQ(entries("pair"),
+            (std::set<std::string>{"prior.txt", "simulation.yaml", "truth.txt", "truth_points.ply",
+                                   "uav", "uav/offset.xyz", "uav/point_cloud.ply", "ugv",
+                                   "ugv/offset.xyz", "ugv/point_cloud.ply"}));
+  const PairFiles files{inFolder("pair")};
+  const PlyPoint first = pointsOfPly(contentOf(files.uav())).front();
+  EXPECT_NEAR(first.xyz[0], kEast, 0.5);
+  EXPECT_NEAR(first.xyz[1], kNorth, 0.5);
+  EXPECT_NEAR(first.xyz[2], 300.0, 0.5);
+
+  const ProgramResult result =
+      runAgricolmap({"register", files.uav(), files.ugv(), "-o", inFolder("out"), "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const nlohmann::json errors = errorsOf(inFolder("out/transform.txt"), files);
+  EXPECT_LT(errors.at("rms_m").get<double>(), 0.03) << errors.dump();
+
+  // What it wrote down makes the same pair again.
+  const std::string record = contentOf(files.folder / "simulation.yaml");
+  EXPECT_EQ(record.rfind("# Made from --ortho " + ortho + " --dsm " + dsm + " --dtm " + dtm +
+                             " --window 0 0 733 533",
+                         0),
+            0U)
+      << record.substr(0, 300);
+  ASSERT_EQ(runAgricolmap({"simulate", "--config", files.folder / "simulation.yaml", "--ortho",
+                           ortho, "--dsm", dsm, "--dtm", dtm, "-o", inFolder("again")})
+                .exit_code,
+            0);
+  EXPECT_EQ(contentOf(inFolder("again/ugv/point_cloud.ply")) == contentOf(files.ugv()), true);
+}
+
+TEST_F(OrthoTest, APictureNeedsTheSizeOfItsPixels) {
+  const std::string picture = writeMosaic("picture.tif", 9.0, 9.0, false);
+  expectFailure(simulate({"--ortho", picture, "-o", inFolder("pair")}), 3, {picture, "--gsd"});
+  const ProgramResult made =
+      runAgricolmap(simulate({"--ortho", picture, "--gsd", "0.015", "--window", "20", "30", "550",
+                              "500", "--row_heading", "0", "-o", inFolder("pair")}));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.err.find("--window 20 30 550 500"), std::string::npos) << made.err;
+  expectFailure(simulate({"--ortho", picture, "--gsd", "0.015", "--window", "20", "30", "590",
+                          "500", "-o", inFolder("other")}),
+                3, {picture, "window", "600 x 600"});
+}
+
+TEST_F(OrthoTest, FilesThatCannotBeUsedAreNamed) {
+  const std::string none = inFolder("none.tif");
+  const std::string ortho = writeMosaic("ortho.tif", 9.0, 7.0);
+  const std::string beside = writeModel("beside.tif", 9.0, 7.0, true, 500.0);
+  const std::string out = inFolder("pair");
+  expectFailure(simulate({"--ortho", none, "-o", out}), 3, {none});
+  expectFailure(simulate({"--ortho", ortho, "--dsm", none, "-o", out}), 3, {none});
+  expectFailure(simulate({"--ortho", ortho, "--dsm", beside, "-o", out}), 3,
+                {ortho, beside, "same field"});
+  expectFailure(simulate({"--ortho", ortho, "--gsd", "0.03", "-o", out}), 3, {ortho, "--gsd"});
+  expectFailure({"simulate", "--ugv.length", "12", "--ortho", ortho, "-o", out}, 3,
+                {ortho, "ugv.length"});
+}
+
+TEST_F(OrthoTest, FlagsThatWouldDoNothingAreRefused) {
+  const std::string out = inFolder("pair");
+  expectFailure({"simulate", "--dsm", "dsm.tif", "-o", out}, 2, {"--ortho"});
+  expectFailure({"simulate", "--gsd", "0.01", "-o", out}, 2, {"--ortho"});
+  expectFailure({"simulate", "--row_heading", "30", "-o", out}, 2, {"--ortho"});
+  expectFailure({"simulate", "--ortho", "o.tif", "--field.row_spacing", "0.5", "-o", out}, 2,
+                {"field.row_spacing", "--ortho"});
+  expectFailure({"simulate", "--ortho", "o.tif", "--dsm", "d.tif", "--field.slope", "0", "-o", out},
+                2, {"field.slope", "surface model"});
+  expectFailure({"simulate", "--ortho", "o.tif", "--window", "1", "2", "3", "-o", out}, 2,
+                {"--window"});
+}
+
+}  // namespace
+}  // namespace agricolmap::test
