@@ -55,7 +55,7 @@ GroundRect blocksGround(const Scene& scene) {
   return ground.grown(kRim);
 }
 
-void paintStrip(Canvas& canvas, const Scene& scene, const View& view) {
+void paintStrip(PictureCanvas& canvas, const Scene& scene, const View& view) {
   LayerRow fixed(scene.fixed, Eigen::Affine2d::Identity(), view);
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
     fixed.sample(y);
@@ -70,8 +70,8 @@ void paintStrip(Canvas& canvas, const Scene& scene, const View& view) {
   });
 }
 
-void drawBlock(Canvas& canvas, const Scene& scene, const View& view, const BlockEvidence& block,
-               const Eigen::Vector2d& size) {
+void drawBlock(PictureCanvas& canvas, const Scene& scene, const View& view,
+               const BlockEvidence& block, const Eigen::Vector2d& size) {
   const Colour colour = block.agrees ? kAgrees : kDisagrees;
   const Eigen::Matrix2d linear = scene.registration.pose.linear() * scene.block_strip.axes;
   std::array<Eigen::Vector2d, 4> corners;
@@ -101,7 +101,7 @@ std::vector<std::pair<std::string, std::string>> figures(const Registration& res
           {"correlation", fmt::format("{:.2f}", result.correlation)}};
 }
 
-void drawText(Canvas& canvas, const Scene& scene, int top) {
+void drawText(PictureCanvas& canvas, const Scene& scene, int top) {
   const Registration& result = scene.registration;
   double y = top + 14.0;
   for (const auto& [name, value] : figures(result)) {
@@ -137,11 +137,11 @@ void writeBlocksPicture(const OutputPath& path, const Scene& scene) {
                         "registration predicts it",
                         100.0 * scene.info.evidence.agreement),
             result.verdict, true);
-  Canvas& canvas = page.canvas;
+  PictureCanvas& canvas = page.canvas;
   const View view = fitView({kMargin, page.top, kInnerWidth, height}, ground);
   paintStrip(canvas, scene, view);
   {
-    const Canvas::Clip clip(canvas, view.rect);
+    const PictureCanvas::Clip clip(canvas, view.rect);
     const Eigen::Vector2d size = blockSize(scene.block_strip, scene.info.evidence.block);
     for (const BlockEvidence& block : result.evidence.blocks) {
       drawBlock(canvas, scene, view, block, size);

@@ -30,7 +30,7 @@ GroundRect region(const Scene& scene) {
   return GroundRect{box.center(), Eigen::Matrix2d::Identity(), 0.5 * box.sizes()}.grown(kRim);
 }
 
-void paintDim(Canvas& canvas, const Scene& scene, const View& view) {
+void paintDim(PictureCanvas& canvas, const Scene& scene, const View& view) {
   LayerRow row(scene.fixed, Eigen::Affine2d::Identity(), view);
   canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
     row.sample(y);
@@ -60,7 +60,7 @@ std::vector<Eigen::Vector2d> lineEnds(const std::vector<Match>& matches, std::si
   return ends;
 }
 
-void drawMatches(Canvas& canvas, const Scene& scene, const View& view) {
+void drawMatches(PictureCanvas& canvas, const Scene& scene, const View& view) {
   canvas.lines(lineEnds(scene.registration.association.all_matches, kMaxMatches, view),
                {1.0, kMatchColour, {}});
   const Placement* winner = scene.registration.has_transform ? scene.winner() : nullptr;
@@ -71,7 +71,7 @@ void drawMatches(Canvas& canvas, const Scene& scene, const View& view) {
 }
 
 /// From where the guess puts points of the strip to where the registration puts them.
-void drawFlow(Canvas& canvas, const Scene& scene, const View& view) {
+void drawFlow(PictureCanvas& canvas, const Scene& scene, const View& view) {
   const GroundRect& strip = scene.strip;
   const int along = std::clamp(static_cast<int>(strip.half_extent.x() * view.scale / 60.0), 2, 9);
   const int across = std::clamp(static_cast<int>(strip.half_extent.y() * view.scale / 60.0), 1, 9);
@@ -88,8 +88,8 @@ void drawFlow(Canvas& canvas, const Scene& scene, const View& view) {
   }
 }
 
-void drawOutline(Canvas& canvas, const View& view, const std::vector<Eigen::Vector2d>& ground,
-                 const Stroke& stroke) {
+void drawOutline(PictureCanvas& canvas, const View& view,
+                 const std::vector<Eigen::Vector2d>& ground, const Stroke& stroke) {
   std::vector<Eigen::Vector2d> corners(ground.size());
   std::transform(ground.begin(), ground.end(), corners.begin(),
                  [&](const Eigen::Vector2d& p) { return view.pixel(p); });
@@ -103,7 +103,7 @@ std::string matchText(std::size_t size, std::size_t limit, const char* what) {
                   : fmt::format("{} {}", size, what);
 }
 
-void drawSidebar(Canvas& canvas, const Scene& scene, int x, int top) {
+void drawSidebar(PictureCanvas& canvas, const Scene& scene, int x, int top) {
   const Registration& result = scene.registration;
   std::vector<LegendItem> items = {
       {LegendItem::Kind::kLine, palette::kBefore, "moving map by the guess", {6.0, 4.0}}};
@@ -157,11 +157,11 @@ void writeFlowPicture(const OutputPath& path, const Scene& scene) {
   Page page(height + kMargin, "Flow: from the initial guess to the registration",
             fmt::format("{} (moving) on {} (fixed)", scene.info.moving_name, scene.info.fixed_name),
             result.verdict, true);
-  Canvas& canvas = page.canvas;
+  PictureCanvas& canvas = page.canvas;
   const View view = fitView({kMargin, page.top, kPanelWidth, height}, ground);
   paintDim(canvas, scene, view);
   {
-    const Canvas::Clip clip(canvas, view.rect);
+    const PictureCanvas::Clip clip(canvas, view.rect);
     drawMatches(canvas, scene, view);
     drawOutline(canvas, view, scene.outlineUnder(Eigen::Affine2d::Identity()),
                 {2.0, palette::kBefore, {9.0, 6.0}});

@@ -57,8 +57,8 @@ PixelRect panelFor(const GroundRect& ground, int x, int y) {
           std::max(40, static_cast<int>(2.0 * scale * ground.half_extent.y()))};
 }
 
-void drawMap(Canvas& canvas, const MapLayer& layer, const ValueRange& range, const SoilToLeaf& map,
-             const PixelRect& rect, const std::string& title) {
+void drawMap(PictureCanvas& canvas, const MapLayer& layer, const ValueRange& range,
+             const SoilToLeaf& map, const PixelRect& rect, const std::string& title) {
   const GridFrame& frame = layer.map().frame;
   canvas.text({static_cast<double>(rect.x), rect.y - 9.0},
               canvas.elided(title, kPanelWidth, {15.0, palette::kInk, true}),
@@ -83,7 +83,7 @@ void drawMap(Canvas& canvas, const MapLayer& layer, const ValueRange& range, con
       {13.0, palette::kFaint, false, Align::kLeft});
 }
 
-void drawColourBar(Canvas& canvas, const Scene& scene, const ValueRange& range,
+void drawColourBar(PictureCanvas& canvas, const Scene& scene, const ValueRange& range,
                    const SoilToLeaf& map, int top) {
   const PixelRect bar{kMargin + 170, top, 460, 16};
   canvas.text({kMargin, top + 13.0},

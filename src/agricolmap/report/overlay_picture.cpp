@@ -21,7 +21,7 @@ constexpr std::array<const char*, 2> kInsetNames = {"A", "B"};
 
 class OverlayPainter {
  public:
-  OverlayPainter(Canvas& canvas, const Scene& scene, const Eigen::Affine2d& pose)
+  OverlayPainter(PictureCanvas& canvas, const Scene& scene, const Eigen::Affine2d& pose)
       : canvas_(canvas), scene_(scene), pose_(pose), moving_from_fixed_(pose.inverse()) {}
 
   void paint(const View& view) {
@@ -48,7 +48,7 @@ class OverlayPainter {
   }
 
   void outline(const View& view, const Stroke& stroke) {
-    const Canvas::Clip clip(canvas_, view.rect);
+    const PictureCanvas::Clip clip(canvas_, view.rect);
     std::vector<Eigen::Vector2d> corners = scene_.outlineUnder(pose_);
     for (Eigen::Vector2d& corner : corners) corner = view.pixel(corner);
     canvas_.polygon(corners, stroke);
@@ -61,7 +61,7 @@ class OverlayPainter {
   }
 
   void markInsets(const View& view) {
-    const Canvas::Clip clip(canvas_, view.rect);
+    const PictureCanvas::Clip clip(canvas_, view.rect);
     for (std::size_t i = 0; i < scene_.insets.size(); ++i) {
       const Eigen::Vector2d middle = view.pixel(insetGround(i).centre);
       const int side = static_cast<int>(kInsetSide * view.scale);
@@ -105,13 +105,13 @@ class OverlayPainter {
   }
 
  private:
-  Canvas& canvas_;
+  PictureCanvas& canvas_;
   const Scene& scene_;
   Eigen::Affine2d pose_;
   Eigen::Affine2d moving_from_fixed_;
 };
 
-void drawFooter(Canvas& canvas, int top) {
+void drawFooter(PictureCanvas& canvas, int top) {
   drawLegend(canvas, {kMargin, top + 26.0},
              {{LegendItem::Kind::kSquare, hexColour(0xfc10fc), "only in the fixed map", {}},
               {LegendItem::Kind::kSquare, hexColour(0x10fc10), "only in the moving map", {}},
@@ -123,7 +123,7 @@ void drawFooter(Canvas& canvas, int top) {
 }
 
 std::string subtitle(const Scene& scene, bool after) {
-  const std::string names = fmt::format("{} on {}", scene.info.moving_name, scene.info.fixed_name);
+  std::string names = fmt::format("{} on {}", scene.info.moving_name, scene.info.fixed_name);
   if (!after) return names;
   return fmt::format("{}; correlation {:.2f}, overlap {:.0f} %", describeMove(scene.registration),
                      scene.registration.correlation, 100.0 * scene.registration.overlap);

@@ -16,7 +16,7 @@ constexpr TextStyle kBannerText{14.0, hexColour(0xffffff), false, Align::kLeft};
 
 std::vector<std::string> bannerLines(const Verdict& verdict) {
   if (verdict.status == Status::kAccepted) return {};
-  Canvas scratch(1, 1, {});
+  PictureCanvas scratch(1, 1, {});
   std::vector<std::string> lines = scratch.wrapped(
       fmt::format("{}", fmt::join(verdict.reasons, "; ")), kInnerWidth - 150.0, kBannerText);
   if (lines.size() > kMaxBannerLines) {
@@ -71,7 +71,7 @@ Page::Page(int content_height, const std::string& title, const std::string& subt
   top += bannerHeight(lines.size());
 }
 
-void drawScaleBar(Canvas& canvas, const View& view) {
+void drawScaleBar(PictureCanvas& canvas, const View& view) {
   const double length = roundLength(0.2 * view.rect.width / view.scale);
   const double pixels = length * view.scale;
   const TextStyle style{12.0, palette::kInk, true, Align::kCentre};
@@ -93,7 +93,7 @@ void drawScaleBar(Canvas& canvas, const View& view) {
                stroke);
 }
 
-void drawNorth(Canvas& canvas, const View& view) {
+void drawNorth(PictureCanvas& canvas, const View& view) {
   const PixelRect plate{view.rect.x + view.rect.width - 48, view.rect.y + 8, 40, 40};
   canvas.fill(plate, hexColour(0xffffff, 0.85));
   const Eigen::Vector2d up = view.direction({0.0, 1.0}).normalized();
@@ -104,7 +104,7 @@ void drawNorth(Canvas& canvas, const View& view) {
               {12.0, palette::kInk, true, Align::kCentre});
 }
 
-void drawPlate(Canvas& canvas, const View& view, const std::string& text) {
+void drawPlate(PictureCanvas& canvas, const View& view, const std::string& text) {
   const TextStyle style{13.0, palette::kInk, true, Align::kLeft};
   const std::string fitting = canvas.elided(text, view.rect.width - 80.0, style);
   const int width = static_cast<int>(canvas.textWidth(fitting, style)) + 14;
@@ -112,7 +112,7 @@ void drawPlate(Canvas& canvas, const View& view, const std::string& text) {
   canvas.text({view.rect.x + 15.0, view.rect.y + 24.0}, fitting, style);
 }
 
-double drawLegend(Canvas& canvas, Eigen::Vector2d at, const std::vector<LegendItem>& items,
+double drawLegend(PictureCanvas& canvas, Eigen::Vector2d at, const std::vector<LegendItem>& items,
                   bool vertical) {
   const TextStyle style{13.0, palette::kInk, false, Align::kLeft};
   double end = at.x();

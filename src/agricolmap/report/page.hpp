@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "agricolmap/7_verdict/verdict.hpp"
-#include "agricolmap/report/canvas.hpp"
+#include "agricolmap/report/picture_canvas.hpp"
 #include "agricolmap/report/view.hpp"
 
 namespace agricolmap {
@@ -35,16 +35,16 @@ class Page {
   Page(int content_height, const std::string& title, const std::string& subtitle,
        const Verdict& verdict, bool show_accepted);
 
-  Canvas canvas;
+  PictureCanvas canvas;
   int top = 0;  ///< where the room begins [px]
 };
 
 /// A bar of a round length with its label, in the lower left corner of the view.
-void drawScaleBar(Canvas& canvas, const View& view);
+void drawScaleBar(PictureCanvas& canvas, const View& view);
 /// An arrow to the north (the levelled y axis), in the upper right corner of the view.
-void drawNorth(Canvas& canvas, const View& view);
+void drawNorth(PictureCanvas& canvas, const View& view);
 /// Text on a plate in the upper left corner of the view.
-void drawPlate(Canvas& canvas, const View& view, const std::string& text);
+void drawPlate(PictureCanvas& canvas, const View& view, const std::string& text);
 
 /// What a legend shows beside a text.
 struct LegendItem {
@@ -54,7 +54,7 @@ struct LegendItem {
   std::vector<double> dashes;
 };
 /// In a row from `at` (baseline); returns the x behind the last.
-double drawLegend(Canvas& canvas, Eigen::Vector2d at, const std::vector<LegendItem>& items,
+double drawLegend(PictureCanvas& canvas, Eigen::Vector2d at, const std::vector<LegendItem>& items,
                   bool vertical);
 
 /// Packs 0…255 channels as the canvas stores pixels.

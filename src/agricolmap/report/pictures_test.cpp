@@ -12,9 +12,9 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/report/canvas.hpp"
 #include "agricolmap/report/map_layer.hpp"
 #include "agricolmap/report/outline.hpp"
+#include "agricolmap/report/picture_canvas.hpp"
 #include "agricolmap/report/png_file.hpp"
 #include "agricolmap/report/test_registration.hpp"
 #include "agricolmap/report/utf8.hpp"
@@ -197,7 +197,7 @@ TEST_F(Pictures, FailuresToWriteAreOutputErrors) {
 }
 
 TEST_F(Pictures, PngKeepsEveryPixel) {
-  Canvas canvas(37, 11, hexColour(0x123456));
+  PictureCanvas canvas(37, 11, hexColour(0x123456));
   canvas.paint({3, 2, 30, 5}, [](int y, std::uint32_t* row) {
     for (int x = 0; x < 30; ++x) row[x] = static_cast<std::uint32_t>(0x010203 * (x + y));
   });

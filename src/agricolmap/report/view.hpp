@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "agricolmap/report/canvas.hpp"
+#include "agricolmap/report/picture_canvas.hpp"
 
 namespace agricolmap {
 

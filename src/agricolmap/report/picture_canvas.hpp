@@ -49,9 +49,9 @@ struct Stroke {
   std::vector<double> dashes;  ///< on, off, … [px]; empty = solid
 };
 
-class Canvas {
+class PictureCanvas {
  public:
-  Canvas(int width, int height, const Colour& background);
+  PictureCanvas(int width, int height, const Colour& background);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -78,7 +78,7 @@ class Canvas {
   /// While it lives nothing is drawn outside `rect`.
   class Clip {
    public:
-    Clip(Canvas& canvas, const PixelRect& rect);
+    Clip(PictureCanvas& canvas, const PixelRect& rect);
     ~Clip();
     Clip(const Clip&) = delete;
     Clip& operator=(const Clip&) = delete;

@@ -1,4 +1,4 @@
-#include "agricolmap/report/canvas.hpp"
+#include "agricolmap/report/picture_canvas.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ void addPath(cairo_t* context, std::span<const Eigen::Vector2d> corners) {
 
 }  // namespace
 
-Canvas::Canvas(int width, int height, const Colour& background)
+PictureCanvas::PictureCanvas(int width, int height, const Colour& background)
     : width_(width),
       height_(height),
       surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)),
@@ -36,32 +36,32 @@ Canvas::Canvas(int width, int height, const Colour& background)
   fill({0, 0, width, height}, background);
 }
 
-std::uint32_t* Canvas::pixelRow(int y) {
+std::uint32_t* PictureCanvas::pixelRow(int y) {
   unsigned char* data = cairo_image_surface_get_data(surface_.get());
   void* row =
       data + static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(surface_.get());
   return static_cast<std::uint32_t*>(row);
 }
 
-void Canvas::setStroke(const Stroke& stroke) {
+void PictureCanvas::setStroke(const Stroke& stroke) {
   setColour(context_.get(), stroke.colour);
   cairo_set_line_width(context_.get(), stroke.width);
   cairo_set_dash(context_.get(), stroke.dashes.data(), static_cast<int>(stroke.dashes.size()), 0.0);
 }
 
-void Canvas::fill(const PixelRect& rect, const Colour& colour) {
+void PictureCanvas::fill(const PixelRect& rect, const Colour& colour) {
   setColour(context_.get(), colour);
   cairo_rectangle(context_.get(), rect.x, rect.y, rect.width, rect.height);
   cairo_fill(context_.get());
 }
 
-void Canvas::frame(const PixelRect& rect, const Stroke& stroke) {
+void PictureCanvas::frame(const PixelRect& rect, const Stroke& stroke) {
   setStroke(stroke);
   cairo_rectangle(context_.get(), rect.x - 0.5, rect.y - 0.5, rect.width + 1.0, rect.height + 1.0);
   cairo_stroke(context_.get());
 }
 
-void Canvas::lines(std::span<const Eigen::Vector2d> ends, const Stroke& stroke) {
+void PictureCanvas::lines(std::span<const Eigen::Vector2d> ends, const Stroke& stroke) {
   setStroke(stroke);
   // Stroked one by one: a path of hundreds of lines costs cairo the square of their number.
   for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
@@ -71,33 +71,34 @@ void Canvas::lines(std::span<const Eigen::Vector2d> ends, const Stroke& stroke) 
   }
 }
 
-void Canvas::polygon(std::span<const Eigen::Vector2d> corners, const Stroke& stroke) {
+void PictureCanvas::polygon(std::span<const Eigen::Vector2d> corners, const Stroke& stroke) {
   setStroke(stroke);
   addPath(context_.get(), corners);
   cairo_stroke(context_.get());
 }
 
-void Canvas::fillPolygon(std::span<const Eigen::Vector2d> corners, const Colour& colour) {
+void PictureCanvas::fillPolygon(std::span<const Eigen::Vector2d> corners, const Colour& colour) {
   setColour(context_.get(), colour);
   addPath(context_.get(), corners);
   cairo_fill(context_.get());
 }
 
-void Canvas::circle(const Eigen::Vector2d& centre, double radius, const Stroke& stroke) {
+void PictureCanvas::circle(const Eigen::Vector2d& centre, double radius, const Stroke& stroke) {
   setStroke(stroke);
   cairo_new_sub_path(context_.get());
   cairo_arc(context_.get(), centre.x(), centre.y(), radius, 0.0, 2.0 * std::numbers::pi);
   cairo_stroke(context_.get());
 }
 
-void Canvas::disc(const Eigen::Vector2d& centre, double radius, const Colour& colour) {
+void PictureCanvas::disc(const Eigen::Vector2d& centre, double radius, const Colour& colour) {
   setColour(context_.get(), colour);
   cairo_new_sub_path(context_.get());
   cairo_arc(context_.get(), centre.x(), centre.y(), radius, 0.0, 2.0 * std::numbers::pi);
   cairo_fill(context_.get());
 }
 
-void Canvas::arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Stroke& stroke) {
+void PictureCanvas::arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                          const Stroke& stroke) {
   const double length = (to - from).norm();
   if (!(length > 0.5)) return;
   const Eigen::Vector2d along = (to - from) / length;
@@ -110,13 +111,13 @@ void Canvas::arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const
               stroke.colour);
 }
 
-void Canvas::setFont(const TextStyle& style) {
+void PictureCanvas::setFont(const TextStyle& style) {
   cairo_select_font_face(context_.get(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                          style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(context_.get(), style.size);
 }
 
-void Canvas::text(const Eigen::Vector2d& at, std::string_view text, const TextStyle& style) {
+void PictureCanvas::text(const Eigen::Vector2d& at, std::string_view text, const TextStyle& style) {
   const std::string valid = validUtf8(text);
   const double shift = style.align == Align::kLeft     ? 0.0
                        : style.align == Align::kCentre ? 0.5
@@ -129,14 +130,14 @@ void Canvas::text(const Eigen::Vector2d& at, std::string_view text, const TextSt
   cairo_new_path(context_.get());
 }
 
-double Canvas::textWidth(std::string_view text, const TextStyle& style) {
+double PictureCanvas::textWidth(std::string_view text, const TextStyle& style) {
   setFont(style);
   cairo_text_extents_t extents;
   cairo_text_extents(context_.get(), validUtf8(text).c_str(), &extents);
   return extents.x_advance;
 }
 
-std::string Canvas::elided(std::string_view text, double width, const TextStyle& style) {
+std::string PictureCanvas::elided(std::string_view text, double width, const TextStyle& style) {
   std::string rest = validUtf8(text);
   if (textWidth(rest, style) <= width) return rest;
   const auto isContinuation = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
@@ -148,14 +149,14 @@ std::string Canvas::elided(std::string_view text, double width, const TextStyle&
   return "…" + rest;
 }
 
-std::vector<std::string> Canvas::wrapped(std::string_view text, double width,
-                                         const TextStyle& style) {
+std::vector<std::string> PictureCanvas::wrapped(std::string_view text, double width,
+                                                const TextStyle& style) {
   std::vector<std::string> lines;
   std::string line;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word(text.substr(begin, end - begin));
-    const std::string longer = line.empty() ? word : line + " " + word;
+    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
     if (!line.empty() && textWidth(longer, style) > width) {
       lines.push_back(line);
       line = word;
@@ -168,15 +169,16 @@ std::vector<std::string> Canvas::wrapped(std::string_view text, double width,
   return lines;
 }
 
-Canvas::Clip::Clip(Canvas& canvas, const PixelRect& rect) : context_(canvas.context_.get()) {
+PictureCanvas::Clip::Clip(PictureCanvas& canvas, const PixelRect& rect)
+    : context_(canvas.context_.get()) {
   cairo_save(context_);
   cairo_rectangle(context_, rect.x, rect.y, rect.width, rect.height);
   cairo_clip(context_);
 }
 
-Canvas::Clip::~Clip() { cairo_restore(context_); }
+PictureCanvas::Clip::~Clip() { cairo_restore(context_); }
 
-void Canvas::write(const OutputPath& path) {
+void PictureCanvas::write(const OutputPath& path) {
   const cairo_status_t status = cairo_status(context_.get());
   if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
   if (status != CAIRO_STATUS_SUCCESS) {

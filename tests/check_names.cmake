@@ -1,0 +1,25 @@
+# cmake -DSOURCE_DIR=src/agricolmap -P check_names.cmake
+# Fails when two headers define types of the same name: they share one namespace, and the linker
+# would keep the inline functions of one of them, destructors included, for both.
+cmake_minimum_required(VERSION 3.25)
+file(GLOB_RECURSE headers ${SOURCE_DIR}/*.hpp)
+# Those of the tests have a namespace of their own.
+list(FILTER headers EXCLUDE REGEX "/test_[^/]*$")
+set(names)
+foreach(header IN LISTS headers)
+  file(STRINGS ${header} lines REGEX "^(struct|class|enum|enum class) [A-Za-z0-9_]+[^;]*{")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^(enum class|enum|struct|class) ([A-Za-z0-9_]+).*" "\\2" name "${line}")
+    if(name IN_LIST names)
+      message(SEND_ERROR "${header} and ${header_of_${name}} both define ${name}")
+    else()
+      list(APPEND names ${name})
+      set(header_of_${name} ${header})
+    endif()
+  endforeach()
+endforeach()
+list(LENGTH names count)
+if(count EQUAL 0)
+  message(FATAL_ERROR "no types found under ${SOURCE_DIR}")
+endif()
+message(STATUS "${count} types of different names")
