@@ -39,12 +39,12 @@ TEST(StagedOutput, AppearsWholeOnCommit) {
 
 TEST(StagedOutput, LeavesNothingWithoutCommit) {
   const TempDir dir;
-  try {
+  const auto interrupted = [&] {
     StagedOutput output(dir / "a/b/out", false);
     writeText(output.path("one.txt"), "1");
     throw Interrupted();
-  } catch (const Interrupted&) {
-  }
+  };
+  EXPECT_THROW(interrupted(), Interrupted);
   EXPECT_TRUE(namesIn(dir.path()).empty());
   fs::create_directory(dir / "there");
   { StagedOutput output(dir / "there", false); }
