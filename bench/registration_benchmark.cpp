@@ -58,7 +58,7 @@ void countPoints(benchmark::State& state, std::size_t points) {
 
 void readPly(benchmark::State& state) {
   const Scene& scene = Scene::get();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(readCloud(scene.folder / "uav.ply"));
     benchmark::DoNotOptimize(readCloud(scene.folder / "ugv.ply"));
   }
@@ -73,7 +73,7 @@ Box2 windowOf(const GridMap& map) {
 
 void level(benchmark::State& state) {
   const Scene& scene = Scene::get();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
         levelCloud(scene.pair.uav, Eigen::Affine3d::Identity(), scene.options.level));
     benchmark::DoNotOptimize(
@@ -85,7 +85,7 @@ void level(benchmark::State& state) {
 void grid(benchmark::State& state) {
   const Scene& scene = Scene::get();
   const Registration& r = scene.result;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(makeGridMap(scene.pair.uav, r.frames.levelled_from_fixed,
                                          windowOf(r.fixed_map), scene.options.grid));
     benchmark::DoNotOptimize(makeGridMap(scene.pair.ugv, r.frames.levelled_from_moving,
@@ -100,7 +100,7 @@ void search(benchmark::State& state) {
   CorrelationOptions options = scene.options.search;
   options.signal = scene.options.signal;
   const CorrelationSearch association(options);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     benchmark::DoNotOptimize(association.associate(r.fixed_map, r.moving_map, r.space, times));
   }
@@ -110,7 +110,7 @@ void flow(benchmark::State& state) {
   const Scene& scene = Scene::get();
   const Registration& r = scene.result;
   const FlowAssociation association(scene.options.flow);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     benchmark::DoNotOptimize(association.associate(r.fixed_map, r.moving_map, r.space, times));
   }
@@ -119,7 +119,7 @@ void flow(benchmark::State& state) {
 void refine(benchmark::State& state) {
   const Scene& scene = Scene::get();
   const Registration& r = scene.result;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     std::vector<std::pair<std::string, double>> counts;
     const PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
@@ -131,7 +131,7 @@ void verdict(benchmark::State& state) {
   const Scene& scene = Scene::get();
   const Registration& r = scene.result;
   const PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
         judge(refinement.evidence(r.pose), r.overlap, r.pose, r.space, scene.options.verdict));
   }
@@ -139,7 +139,7 @@ void verdict(benchmark::State& state) {
 
 void whole(benchmark::State& state) {
   const Scene& scene = Scene::get();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     benchmark::DoNotOptimize(
         registerClouds(scene.pair.uav, scene.pair.ugv, scene.pair.prior, scene.options, times));

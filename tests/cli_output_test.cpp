@@ -72,15 +72,16 @@ TEST_F(OutputTest, FullDisk) {
     const std::string& disk;
     ~Unmount() { ::umount2(disk.c_str(), MNT_DETACH); }
   } const unmount{disk};
+  // The message names the file as it would have been, not the hidden one.
   for (const std::string& out : {disk, disk + "/out"}) {
     expectFailure({"register", files.uav(), files.ugv(), "-o", out}, 4,
-                  {disk, "No space left on device"});
+                  {out + "/aligned.ply: ", "No space left on device"});
     expectFailure({"register", files.uav(), files.ugv(), "-o", out, "--no-pictures"}, 4,
-                  {disk, "No space left on device"});
+                  {out + "/aligned.ply: ", "No space left on device"});
   }
   expectFailure({"simulate", "--field.width", "8", "--field.height", "8", "--ugv.length", "3", "-o",
                  disk + "/pair"},
-                4, {disk, "No space left on device"});
+                4, {disk + "/pair/uav/point_cloud.ply: ", "No space left on device"});
 }
 
 TEST_F(OutputTest, AnInterruptLeavesNothing) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
 #include "agricolmap/io/cloud_reader.hpp"
 #include "agricolmap/io/file_sink.hpp"
@@ -35,7 +36,7 @@ Truth readTruth(const EvaluateArguments& arguments, const Cloud& moving) {
     }
     truth.points.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) truth.points.push_back(points.filePoint(i));
-    truth.best_affine = bestAffine(moving, truth.points);
+    truth.best_affine = fitAffine(moving, truth.points);
   } else {
     truth.best_affine = readTransform(arguments.truth);
   }

@@ -153,7 +153,7 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
   }
   if (arguments.no_pictures) return {};
   return times.run("pictures", [&] {
-    return writePictures(output.path("exg_maps.png").parent_path(), result,
+    return writePictures(output.folder(), result,
                          {arguments.fixed, arguments.moving, options.evidence});
   });
 }

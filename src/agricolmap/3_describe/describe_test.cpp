@@ -81,7 +81,7 @@ TEST(Daisy, RampPointsAlongItsGradient) {
   // Brighter to the north: orientation 2 (90°) takes most, 6 (270°) nothing.
   const DescriptorMap map = describedFirst(mapOf([](int row, int) { return 0.1 * row; }, kFlat));
   const std::uint8_t* daisy = map.daisy(map.index(40, 40));
-  for (int point = 0; point < kDaisyPoints; ++point) {
+  for (std::ptrdiff_t point = 0; point < kDaisyPoints; ++point) {
     const std::uint8_t* histogram = daisy + point * kDaisyOrientations;
     EXPECT_EQ(std::max_element(histogram, histogram + kDaisyOrientations) - histogram, 2);
     EXPECT_EQ(histogram[6], 0);
@@ -131,10 +131,10 @@ TEST(Fpfh, PlaneFallsIntoMiddleBinsWhateverItsTilt) {
     const std::size_t middle = map.index(40, 40);
     ASSERT_TRUE((map.known[middle] & DescriptorMap::kFpfhBit) != 0);
     const std::uint8_t* fpfh = map.fpfh(middle);
-    for (int angle = 0; angle < 3; ++angle) {
-      EXPECT_EQ(peak(fpfh + angle * kFpfhBins), kFpfhBins / 2);
-      EXPECT_NEAR(std::accumulate(fpfh + angle * kFpfhBins, fpfh + (angle + 1) * kFpfhBins, 0), 255,
-                  6);
+    for (std::ptrdiff_t angle = 0; angle < 3; ++angle) {
+      const std::uint8_t* histogram = fpfh + angle * kFpfhBins;
+      EXPECT_EQ(peak(histogram), kFpfhBins / 2);
+      EXPECT_NEAR(std::accumulate(histogram, histogram + kFpfhBins, 0), 255, 6);
     }
     EXPECT_GE(fpfh[kFpfhBins / 2], 240);
   }

@@ -277,7 +277,7 @@ void computeFpfh(const MaskedRaster& height, double cell, const FpfhOptions& opt
         for (int col = 0; col < cols; ++col) {
           const std::size_t i = height.value.index(row, col);
           // A histogram of a few pairs says nothing: half of the neighbours must be there.
-          if (2 * spfh.pairs[i] < neighbours.size()) continue;
+          if (std::size_t{2} * spfh.pairs[i] < neighbours.size()) continue;
           sumCell(spfh, neighbours, weights, row, col, rows, cols,
                   out.bytes.data() + i * DescriptorMap::kStride + DescriptorMap::kFpfhOffset);
           out.known[i] |= DescriptorMap::kFpfhBit;

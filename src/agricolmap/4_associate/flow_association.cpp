@@ -52,6 +52,7 @@ Box2 searchWindow(const GridMap& moving, const Reach& reach, const DescribeOptio
 std::vector<double> middles(double limit, double tolerance) {
   const int count = std::max(1, static_cast<int>(std::ceil(limit / tolerance - 1e-9)));
   std::vector<double> result;
+  result.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) result.push_back(limit * ((2.0 * k + 1.0) / count - 1.0));
   return result;
 }

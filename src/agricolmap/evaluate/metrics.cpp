@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/transform.hpp"
@@ -14,23 +14,6 @@ namespace agricolmap {
 namespace {
 
 constexpr std::size_t kChunk = 1U << 15;
-
-/// Moving file frame shifted to the middle of the points, so that nothing is lost to UTM offsets.
-Eigen::Vector3d meanLocal(const Cloud& cloud) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : cloud.xyz) sum += p.cast<double>();
-  return sum / static_cast<double>(cloud.size());
-}
-
-struct Moments {
-  Eigen::Matrix3d qq = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d pq = Eigen::Matrix3d::Zero();
-  Moments& operator+=(const Moments& other) {
-    qq += other.qq;
-    pq += other.pq;
-    return *this;
-  }
-};
 
 struct ErrorSums {
   double horizontal2 = 0.0, vertical2 = 0.0, affine2 = 0.0, worst2 = 0.0;
@@ -49,32 +32,6 @@ Eigen::Vector2d horizontalScales(const Eigen::Affine3d& affine) {
 }
 
 }  // namespace
-
-Eigen::Affine3d bestAffine(const Cloud& moving, const std::vector<Eigen::Vector3d>& targets) {
-  if (moving.size() != targets.size() || moving.size() < 4) {
-    throw InputError(fmt::format(
-        "{}: {} points cannot be compared with {} true positions (equal numbers, at least 4)",
-        moving.name, moving.size(), targets.size()));
-  }
-  const Eigen::Vector3d middle = meanLocal(moving);
-  Eigen::Vector3d target_mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& t : targets) target_mean += t - targets.front();
-  target_mean = target_mean / static_cast<double>(targets.size()) + targets.front();
-  const Moments sums =
-      parallelSum<Moments>(moving.size(), kChunk, {}, [&](std::size_t begin, std::size_t end) {
-        Moments part;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Eigen::Vector3d q = moving.xyz[i].cast<double>() - middle;
-          part.qq += q * q.transpose();
-          part.pq += (targets[i] - target_mean) * q.transpose();
-        }
-        return part;
-      });
-  Eigen::Affine3d affine = Eigen::Affine3d::Identity();
-  affine.linear() = sums.qq.ldlt().solve(sums.pq.transpose()).transpose();
-  affine.translation() = target_mean - affine.linear() * (moving.origin + middle);
-  return affine;
-}
 
 RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Truth& truth,
                                      const Cloud& moving) {
@@ -105,7 +62,7 @@ RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Trut
   errors.rms = std::hypot(errors.rms_horizontal, errors.rms_vertical);
   errors.rms_to_best_affine = std::sqrt(sums.affine2 / count);
   errors.worst = std::sqrt(sums.worst2);
-  const Eigen::Vector3d centre = moving.origin + meanLocal(moving);
+  const Eigen::Vector3d centre = moving.origin + meanPoint(moving);
   errors.translation = (estimate * centre - truth.best_affine * centre).norm();
   const Eigen::Matrix3d difference =
       nearestRotation(estimate.linear()).transpose() * nearestRotation(truth.best_affine.linear());

@@ -40,10 +40,6 @@ struct Truth {
   std::vector<Eigen::Vector3d> points;  ///< per moving point; empty: best_affine is exact
 };
 
-/// Least-squares affine from the cloud's file coordinates to `targets`. Throws InputError if there
-/// are fewer than four points or their number differs.
-Eigen::Affine3d bestAffine(const Cloud& moving, const std::vector<Eigen::Vector3d>& targets);
-
 /// Errors of `estimate` (moving file → fixed file) over all moving points.
 RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Truth& truth,
                                      const Cloud& moving);

@@ -49,7 +49,7 @@ void encode(const Cloud& cloud, const Eigen::Affine3d& target_from_local, std::s
   }
 }
 
-void refuseCoarseFloats(const std::filesystem::path& path, const Cloud& cloud,
+void refuseCoarseFloats(const OutputPath& path, const Cloud& cloud,
                         const Eigen::Affine3d& target_from_local) {
   if (cloud.empty()) return;
   const Box3 box = boundingBox(cloud);
@@ -60,19 +60,18 @@ void refuseCoarseFloats(const std::filesystem::path& path, const Cloud& cloud,
   if (far > kMaxFloatCoordinate) {
     throw UsageError(fmt::format(
         "{}: coordinates up to {:.0f} m would lose precision as 32-bit floats; write doubles",
-        path.string(), far));
+        path.shown(), far));
   }
 }
 
 }  // namespace
 
-void writePly(const std::filesystem::path& path, const Cloud& cloud,
-              const PlyWriteOptions& options) {
+void writePly(const OutputPath& path, const Cloud& cloud, const PlyWriteOptions& options) {
   writePly(path, cloud, Eigen::Affine3d::Identity(), options);
 }
 
-void writePly(const std::filesystem::path& path, const Cloud& cloud,
-              const Eigen::Affine3d& target_from_file, const PlyWriteOptions& options) {
+void writePly(const OutputPath& path, const Cloud& cloud, const Eigen::Affine3d& target_from_file,
+              const PlyWriteOptions& options) {
   static_assert(sizeof(Rgb) == 3);
   const Eigen::Affine3d target_from_local = target_from_file * Eigen::Translation3d(cloud.origin);
   const bool floats = options.float_coordinates;

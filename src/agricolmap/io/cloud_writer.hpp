@@ -2,11 +2,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/output_path.hpp"
 
 namespace agricolmap {
 
@@ -20,12 +20,11 @@ struct PlyWriteOptions {
 
 /// Writes the cloud in the coordinates of its file. Throws OutputError on any failure; what has
 /// been written by then stays, so write into a StagedOutput.
-void writePly(const std::filesystem::path& path, const Cloud& cloud,
-              const PlyWriteOptions& options = {});
+void writePly(const OutputPath& path, const Cloud& cloud, const PlyWriteOptions& options = {});
 
 /// The same after moving every point: file coordinates → target file coordinates, in double. Works
 /// block by block without a second copy of the cloud.
-void writePly(const std::filesystem::path& path, const Cloud& cloud,
-              const Eigen::Affine3d& target_from_file, const PlyWriteOptions& options = {});
+void writePly(const OutputPath& path, const Cloud& cloud, const Eigen::Affine3d& target_from_file,
+              const PlyWriteOptions& options = {});
 
 }  // namespace agricolmap

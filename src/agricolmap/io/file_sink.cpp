@@ -12,9 +12,9 @@
 
 namespace agricolmap {
 
-FileSink::FileSink(std::filesystem::path path)
+FileSink::FileSink(OutputPath path)
     : path_(std::move(path)),
-      fd_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+      fd_(::open(path_.file().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
   if (fd_ < 0) fail("cannot be created");
 }
 
@@ -23,7 +23,7 @@ FileSink::~FileSink() {
 }
 
 void FileSink::fail(std::string_view what) const {
-  throw OutputError(fmt::format("{}: {}: {}", path_.string(), what, std::strerror(errno)));
+  throw OutputError(fmt::format("{}: {}: {}", path_.shown(), what, std::strerror(errno)));
 }
 
 void FileSink::write(std::span<const std::byte> bytes) {
@@ -44,7 +44,7 @@ void FileSink::close() {
   if (fd >= 0 && ::close(fd) != 0) fail("cannot be written");
 }
 
-void writeText(const std::filesystem::path& path, std::string_view text) {
+void writeText(const OutputPath& path, std::string_view text) {
   FileSink sink(path);
   sink.write(text);
   sink.close();

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string_view>
+
+#include "agricolmap/io/output_path.hpp"
 
 namespace agricolmap {
 
@@ -12,7 +13,7 @@ namespace agricolmap {
 /// system's reason. Existing files are truncated.
 class FileSink {
  public:
-  explicit FileSink(std::filesystem::path path);
+  explicit FileSink(OutputPath path);
   ~FileSink();
   FileSink(const FileSink&) = delete;
   FileSink& operator=(const FileSink&) = delete;
@@ -24,11 +25,11 @@ class FileSink {
 
  private:
   [[noreturn]] void fail(std::string_view what) const;
-  std::filesystem::path path_;
+  OutputPath path_;
   int fd_ = -1;
 };
 
 /// Writes a whole file.
-void writeText(const std::filesystem::path& path, std::string_view text);
+void writeText(const OutputPath& path, std::string_view text);
 
 }  // namespace agricolmap

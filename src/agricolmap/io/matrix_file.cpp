@@ -74,7 +74,7 @@ Eigen::Affine3d readTransform(const std::filesystem::path& path) {
       path.string(), numbers.size()));
 }
 
-void writeMatrix(const std::filesystem::path& path, const Eigen::Affine3d& target_from_source,
+void writeMatrix(const OutputPath& path, const Eigen::Affine3d& target_from_source,
                  const std::string& comment) {
   std::string text;
   for (std::size_t begin = 0; begin < comment.size();) {

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "agricolmap/io/output_path.hpp"
+
 namespace agricolmap {
 
 /// Reads 16 numbers: finite, last row 0 0 0 1, invertible. Commas, brackets and `#` comments are
@@ -13,7 +15,7 @@ Eigen::Affine3d readMatrix(const std::filesystem::path& path);
 
 /// Writes 17 significant digits: what is read back is the same to the bit. `comment` goes first,
 /// each of its lines behind a `#`.
-void writeMatrix(const std::filesystem::path& path, const Eigen::Affine3d& target_from_source,
+void writeMatrix(const OutputPath& path, const Eigen::Affine3d& target_from_source,
                  const std::string& comment = "");
 
 /// Ground truth as published with the paper's data: 12 numbers of a 3×4 affine, row-major, then the

@@ -52,7 +52,7 @@ std::optional<Eigen::Affine3d> readOffsetBeside(const std::filesystem::path& clo
   return std::nullopt;
 }
 
-void writeOffset(const std::filesystem::path& path, const Eigen::Affine3d& world_from_cloud) {
+void writeOffset(const OutputPath& path, const Eigen::Affine3d& world_from_cloud) {
   const Eigen::Matrix3d r = world_from_cloud.linear();
   const double skew = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(skew < kRigidTolerance) || r.determinant() < 0.0) {

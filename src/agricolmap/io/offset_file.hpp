@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "agricolmap/io/output_path.hpp"
+
 namespace agricolmap {
 
 /// Reads an offset file. Throws InputError with file and line.
@@ -23,6 +25,6 @@ std::optional<Eigen::Affine3d> readOffsetBeside(const std::filesystem::path& clo
 
 /// Writes an offset file with six numbers that read back the same to rounding. Throws UsageError
 /// when `world_from_cloud` is not rigid, OutputError when it cannot be written.
-void writeOffset(const std::filesystem::path& path, const Eigen::Affine3d& world_from_cloud);
+void writeOffset(const OutputPath& path, const Eigen::Affine3d& world_from_cloud);
 
 }  // namespace agricolmap

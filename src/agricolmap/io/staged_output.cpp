@@ -107,7 +107,8 @@ fs::path checkedName(const std::string& name) {
 
 }  // namespace
 
-StagedOutput::StagedOutput(const fs::path& dir, bool overwrite) : target_(resolve(dir)) {
+StagedOutput::StagedOutput(const fs::path& dir, bool overwrite)
+    : asked_(dir), target_(resolve(dir)) {
   std::error_code error;
   const fs::file_status status = fs::status(target_, error);
   target_existed_ = fs::exists(status);
@@ -137,12 +138,20 @@ StagedOutput::~StagedOutput() {
   removeParents(made_parents_);
 }
 
-fs::path StagedOutput::path(const std::string& name) const {
+OutputPath StagedOutput::folder() const {
   if (staging_.empty()) throw UsageError("the output was committed already");
-  fs::path path = staging_ / "new" / checkedName(name);
+  OutputPath folder(staging_ / "new", asked_);
   std::error_code error;
-  fs::create_directories(path.parent_path(), error);
-  if (error) fail(path.parent_path(), "the folder cannot be made", error);
+  fs::create_directories(folder.file(), error);
+  if (error) fail(folder.shown(), "cannot be written", error);
+  return folder;
+}
+
+OutputPath StagedOutput::path(const std::string& name) const {
+  OutputPath path = folder() / checkedName(name);
+  std::error_code error;
+  fs::create_directories(path.file().parent_path(), error);
+  if (error) fail(path.shown(), "cannot be written", error);
   return path;
 }
 
@@ -157,7 +166,7 @@ void StagedOutput::moveAside(const fs::path& name) {
   }
   const fs::path to = staging_ / "old" / name;
   fs::create_directories(to.parent_path(), error);
-  if (error) fail(to.parent_path(), "the folder cannot be made", error);
+  if (error) fail(from, "cannot be set aside", error);
   renameOrFail(from, to);
   moves_.push_back({from, to});
 }
@@ -170,11 +179,8 @@ void StagedOutput::rollBack() noexcept {
 }
 
 void StagedOutput::commit(const std::vector<std::string>& stale_names) {
-  if (staging_.empty()) throw UsageError("the output was committed already");
-  const fs::path fresh = staging_ / "new";
+  const fs::path fresh = folder().file();
   std::error_code error;
-  fs::create_directories(fresh, error);
-  if (error) fail(fresh, "the folder cannot be made", error);
   if (!target_existed_) {
     renameOrFail(fresh, target_);
   } else {
@@ -203,7 +209,7 @@ void StagedOutput::commit(const std::vector<std::string>& stale_names) {
   made_parents_.clear();
 }
 
-StagedFile::StagedFile(const fs::path& path, bool overwrite) {
+StagedFile::StagedFile(const fs::path& path, bool overwrite) : asked_(path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "agricolmap/io/output_path.hpp"
+
 namespace agricolmap {
 
 /// A folder of results, filled out of sight and put in place by `commit`. Destroyed without commit
@@ -22,7 +24,9 @@ class StagedOutput {
   StagedOutput& operator=(const StagedOutput&) = delete;
 
   /// Where to write the file `name` (relative; may be in a subfolder, which is made).
-  std::filesystem::path path(const std::string& name) const;
+  OutputPath path(const std::string& name) const;
+  /// The folder to write into, for those who name their files themselves.
+  OutputPath folder() const;
   /// Puts every file in place, replacing those of the same names, and removes files in
   /// `stale_names` (left by an earlier run) that this run did not write; other files of the folder
   /// stay. When one step fails, all are undone and OutputError is thrown.
@@ -35,7 +39,8 @@ class StagedOutput {
   void moveAside(const std::filesystem::path& name);
   void rollBack() noexcept;
 
-  std::filesystem::path target_;
+  std::filesystem::path asked_;   ///< the target as the user wrote it
+  std::filesystem::path target_;  ///< the same, absolute
   std::filesystem::path staging_;
   std::vector<std::filesystem::path> made_parents_;  ///< innermost first
   struct Move {
@@ -58,11 +63,12 @@ class StagedFile {
   StagedFile& operator=(const StagedFile&) = delete;
 
   /// Where to write.
-  const std::filesystem::path& path() const { return staging_; }
+  OutputPath path() const { return {staging_, asked_}; }
   /// Puts the file in place.
   void commit();
 
  private:
+  std::filesystem::path asked_;
   std::filesystem::path target_;
   std::filesystem::path staging_;
   std::vector<std::filesystem::path> made_parents_;

@@ -39,12 +39,12 @@ TEST(StagedOutput, AppearsWholeOnCommit) {
 
 TEST(StagedOutput, LeavesNothingWithoutCommit) {
   const TempDir dir;
-  try {
+  const auto interrupted = [&] {
     StagedOutput output(dir / "a/b/out", false);
     writeText(output.path("one.txt"), "1");
     throw Interrupted();
-  } catch (const Interrupted&) {
-  }
+  };
+  EXPECT_THROW(interrupted(), Interrupted);
   EXPECT_TRUE(namesIn(dir.path()).empty());
   fs::create_directory(dir / "there");
   { StagedOutput output(dir / "there", false); }
@@ -105,6 +105,41 @@ TEST(StagedOutput, RefusesImpossiblePlaces) {
   }
 }
 
+/// What `call` complains of, up to the first colon.
+template <typename Call>
+std::string placeInError(const Call& call) {
+  try {
+    call();
+  } catch (const OutputError& error) {
+    const std::string message = error.what();
+    return message.substr(0, message.find(": "));
+  }
+  return "no error";
+}
+
+TEST(StagedOutput, ErrorsNameThePlaceAskedFor) {
+  const TempDir dir;
+  fs::create_directory(dir / "there");
+  for (const fs::path& name : {dir / "there", dir / "new"}) {
+    const StagedOutput output(name, false);
+    // Neither a folder nor what lies below a file can be written as a file.
+    fs::create_directory(output.path("a").file());
+    writeText(output.path("b"), "1");
+    EXPECT_EQ(placeInError([&] { writeText(output.path("a"), "1"); }), name / "a");
+    EXPECT_EQ(placeInError([&] { writeText(output.folder() / "a", "1"); }), name / "a");
+    EXPECT_EQ(placeInError([&] { output.path("b/c"); }), name / "b/c");
+  }
+}
+
+TEST(StagedFile, ErrorsNameThePlaceAskedFor) {
+  const TempDir dir;
+  const StagedFile file(dir / "a.txt", false);
+  fs::remove(file.path().file());
+  fs::create_directory(file.path().file());
+  EXPECT_EQ(placeInError([&] { writeText(file.path(), "1"); }), dir / "a.txt");
+  fs::remove(file.path().file());
+}
+
 TEST(StagedOutput, FollowsLinks) {
   const TempDir dir;
   fs::create_directory(dir / "real");
@@ -150,7 +185,7 @@ TEST(StagedFile, RefusesImpossiblePlacesAndWritesDevicesStraight) {
   expectError<OutputError>([&] { StagedFile(dir.path(), true); }, {"is a folder"});
   expectError<OutputError>([&] { StagedFile(dir / "file/out", true); }, {"file/out"});
   StagedFile device("/dev/null", false);
-  EXPECT_EQ(device.path(), "/dev/null");
+  EXPECT_EQ(device.path().file(), "/dev/null");
   device.commit();
 }
 

@@ -124,7 +124,7 @@ void drawText(PictureCanvas& canvas, const Scene& scene, int top) {
 
 }  // namespace
 
-void writeBlocksPicture(const std::filesystem::path& path, const Scene& scene) {
+void writeBlocksPicture(const OutputPath& path, const Scene& scene) {
   const Registration& result = scene.registration;
   const GroundRect ground = blocksGround(scene);
   const int height =

@@ -149,7 +149,7 @@ void drawSidebar(PictureCanvas& canvas, const Scene& scene, int x, int top) {
 
 }  // namespace
 
-void writeFlowPicture(const std::filesystem::path& path, const Scene& scene) {
+void writeFlowPicture(const OutputPath& path, const Scene& scene) {
   const Registration& result = scene.registration;
   const GroundRect ground = region(scene);
   const int height =

@@ -111,7 +111,7 @@ void drawColourBar(PictureCanvas& canvas, const Scene& scene, const ValueRange& 
 
 }  // namespace
 
-void writeMapsPicture(const std::filesystem::path& path, const Scene& scene) {
+void writeMapsPicture(const OutputPath& path, const Scene& scene) {
   const GroundRect fixed = wholeMap(scene.fixed.map().frame);
   const GroundRect moving = wholeMap(scene.moving.map().frame);
   const int height = std::max(panelFor(fixed, 0, 0).height, panelFor(moving, 0, 0).height);

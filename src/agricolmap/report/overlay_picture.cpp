@@ -131,7 +131,7 @@ std::string subtitle(const Scene& scene, bool after) {
 
 }  // namespace
 
-void writeOverlayPicture(const std::filesystem::path& path, const Scene& scene, bool after) {
+void writeOverlayPicture(const OutputPath& path, const Scene& scene, bool after) {
   const Eigen::Affine2d pose = after ? scene.registration.pose : Eigen::Affine2d::Identity();
   const double aspect = scene.stripUnder(pose).grown(kRim).aspect();
   const bool wide = aspect >= kWideAspect;

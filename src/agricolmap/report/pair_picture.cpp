@@ -159,7 +159,7 @@ void drawFooter(PictureCanvas& canvas, bool same_field) {
 
 }  // namespace
 
-void writePairPicture(const std::filesystem::path& path, const Cloud& fixed, const Cloud& moving,
+void writePairPicture(const OutputPath& path, const Cloud& fixed, const Cloud& moving,
                       const Eigen::Affine3d& fixed_from_moving, const PairPictureInfo& info) {
   const Eigen::Affine3d ground_from_moving =
       Eigen::Translation3d(-fixed.origin) * fixed_from_moving * Eigen::Translation3d(moving.origin);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <filesystem>
 #include <string>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/output_path.hpp"
 
 namespace agricolmap {
 
@@ -21,7 +21,7 @@ struct PairPictureInfo {
 /// each of them sees it, and a square of 2 m of the same place from both. `fixed_from_moving`
 /// (file coordinates) is where the moving cloud truly belongs. Both clouds need colours, z up.
 /// Throws UsageError, OutputError.
-void writePairPicture(const std::filesystem::path& path, const Cloud& fixed, const Cloud& moving,
+void writePairPicture(const OutputPath& path, const Cloud& fixed, const Cloud& moving,
                       const Eigen::Affine3d& fixed_from_moving, const PairPictureInfo& info = {});
 
 }  // namespace agricolmap

@@ -178,12 +178,12 @@ PictureCanvas::Clip::Clip(PictureCanvas& canvas, const PixelRect& rect)
 
 PictureCanvas::Clip::~Clip() { cairo_restore(context_); }
 
-void PictureCanvas::write(const std::filesystem::path& path) {
+void PictureCanvas::write(const OutputPath& path) {
   const cairo_status_t status = cairo_status(context_.get());
   if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
   if (status != CAIRO_STATUS_SUCCESS) {
     throw OutputError(
-        fmt::format("{}: cannot be drawn: {}", path.string(), cairo_status_to_string(status)));
+        fmt::format("{}: cannot be drawn: {}", path.shown(), cairo_status_to_string(status)));
   }
   cairo_surface_flush(surface_.get());
   const std::size_t stride =

@@ -5,13 +5,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "agricolmap/io/output_path.hpp"
 namespace agricolmap {
 
 struct Colour {
@@ -97,7 +97,7 @@ class PictureCanvas {
   }
 
   /// The picture as a PNG file. Throws OutputError.
-  void write(const std::filesystem::path& path);
+  void write(const OutputPath& path);
 
  private:
   struct Destroy {

@@ -13,7 +13,7 @@ namespace {
 struct Kind {
   const char* name;
   bool needs_transform;
-  void (*write)(const std::filesystem::path& path, const Scene& scene);
+  void (*write)(const OutputPath& path, const Scene& scene);
 };
 
 /// Those that take longest first, so that the last to finish is a quick one.
@@ -35,8 +35,8 @@ std::vector<std::string> pictureNames() {
   return names;
 }
 
-std::vector<std::string> writePictures(const std::filesystem::path& dir,
-                                       const Registration& registration, const PictureInfo& info) {
+std::vector<std::string> writePictures(const OutputPath& dir, const Registration& registration,
+                                       const PictureInfo& info) {
   const Scene scene(registration, info);
   std::vector<const Kind*> chosen;
   for (const Kind& kind : kKinds) {

@@ -1,11 +1,11 @@
 // Pictures of a registration for people: what was compared, what was found, and how well it fits.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "agricolmap/7_verdict/evidence.hpp"
+#include "agricolmap/io/output_path.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
 namespace agricolmap {
@@ -26,8 +26,7 @@ std::vector<std::string> pictureNames();
 ///  - overlay_before.png, overlay_after.png: both maps in complementary colours,
 ///  - blocks.png: what the blocks of the moving map say when placed alone.
 /// Without a transform only the first two. Throws OutputError.
-std::vector<std::string> writePictures(const std::filesystem::path& dir,
-                                       const Registration& registration,
+std::vector<std::string> writePictures(const OutputPath& dir, const Registration& registration,
                                        const PictureInfo& info = {});
 
 }  // namespace agricolmap

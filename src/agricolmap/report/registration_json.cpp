@@ -203,9 +203,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   return json;
 }
 
-void writeRegistrationJson(const std::filesystem::path& path, const Cloud& fixed,
-                           const Cloud& moving, const Registration& registration,
-                           const StageTimes& times, const RegistrationReportInfo& info) {
+void writeRegistrationJson(const OutputPath& path, const Cloud& fixed, const Cloud& moving,
+                           const Registration& registration, const StageTimes& times,
+                           const RegistrationReportInfo& info) {
   writeText(path, registrationJson(fixed, moving, registration, times, info).dump(2) + "\n");
 }
 

@@ -4,13 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/io/output_path.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
 namespace agricolmap {
@@ -36,9 +36,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
                                         const RegistrationReportInfo& info);
 
 /// Writes it, indented. Throws OutputError.
-void writeRegistrationJson(const std::filesystem::path& path, const Cloud& fixed,
-                           const Cloud& moving, const Registration& registration,
-                           const StageTimes& times, const RegistrationReportInfo& info);
+void writeRegistrationJson(const OutputPath& path, const Cloud& fixed, const Cloud& moving,
+                           const Registration& registration, const StageTimes& times,
+                           const RegistrationReportInfo& info);
 
 /// Most memory that the process ever held [bytes]; 0 where the system does not tell.
 std::size_t peakMemoryBytes();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -145,7 +146,6 @@ SimulatedPair assemblePair(const SimulationOptions& options, const Eigen::Vector
   pair.ugv.rgb = std::move(below.rgb);
   pair.ugv.xyz.resize(count);
   pair.truth.resize(count);
-  std::vector<Eigen::Vector3d> file(count);
   parallelFor(
       count,
       [&](std::size_t i) {
@@ -153,10 +153,9 @@ SimulatedPair assemblePair(const SimulationOptions& options, const Eigen::Vector
         pair.truth[i] = begin + turn * local;
         const Eigen::Vector3d drifted = pair.truth[i] + turn * drift.at(local.x(), local.y());
         pair.ugv.xyz[i] = (file_from_uav * drifted - pair.ugv.origin).cast<float>();
-        file[i] = pair.ugv.filePoint(i);
       },
       1U << 14);
-  pair.best_affine = fitAffine(file, pair.truth);
+  pair.best_affine = fitAffine(pair.ugv, pair.truth);
   return pair;
 }
 

@@ -1,10 +1,8 @@
 #include "agricolmap/simulate/geotag.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
-#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 
 namespace agricolmap {
@@ -49,53 +47,6 @@ Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, s
   tag.nominal.linear() = tag.prior.linear() * turn * unscale.asDiagonal();
   tag.nominal.translation() = centre - tag.nominal.linear() * file_centre;
   return tag;
-}
-
-namespace {
-
-struct Moments {
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();
-  Eigen::Vector3d to = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d from_from = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d to_from = Eigen::Matrix3d::Zero();
-  Moments& operator+=(const Moments& other) {
-    from += other.from;
-    to += other.to;
-    from_from += other.from_from;
-    to_from += other.to_from;
-    return *this;
-  }
-};
-
-}  // namespace
-
-Eigen::Affine3d fitAffine(const std::vector<Eigen::Vector3d>& from,
-                          const std::vector<Eigen::Vector3d>& to) {
-  // Relative to the first pair, so that UTM coordinates cost no digits.
-  const Eigen::Vector3d from0 = from.front();
-  const Eigen::Vector3d to0 = to.front();
-  const auto count = static_cast<double>(from.size());
-  Moments sum =
-      parallelSum(from.size(), 1U << 15, Moments{}, [&](std::size_t begin, std::size_t end) {
-        Moments part;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Eigen::Vector3d a = from[i] - from0;
-          const Eigen::Vector3d b = to[i] - to0;
-          part.from += a;
-          part.to += b;
-          part.from_from += a * a.transpose();
-          part.to_from += b * a.transpose();
-        }
-        return part;
-      });
-  const Eigen::Vector3d mean_from = sum.from / count;
-  const Eigen::Vector3d mean_to = sum.to / count;
-  const Eigen::Matrix3d spread = sum.from_from / count - mean_from * mean_from.transpose();
-  const Eigen::Matrix3d cross = sum.to_from / count - mean_to * mean_from.transpose();
-  Eigen::Affine3d result;
-  result.linear() = spread.ldlt().solve(cross.transpose()).transpose();
-  result.translation() = to0 + mean_to - result.linear() * (from0 + mean_from);
-  return result;
 }
 
 }  // namespace agricolmap

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <vector>
 
 #include "agricolmap/simulate/simulation_options.hpp"
 
@@ -16,10 +15,5 @@ struct Geotag {
 
 /// Draws the errors of a strip that is centred at `centre` (UAV file coordinates).
 Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, std::uint64_t seed);
-
-/// The affine that maps `from[i]` to `to[i]` with the least sum of squares. Coordinates may be
-/// large; `from` must not lie in a plane.
-Eigen::Affine3d fitAffine(const std::vector<Eigen::Vector3d>& from,
-                          const std::vector<Eigen::Vector3d>& to);
 
 }  // namespace agricolmap

@@ -9,7 +9,6 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/simulate/drift.hpp"
-#include "agricolmap/simulate/geotag.hpp"
 #include "agricolmap/simulate/light.hpp"
 #include "agricolmap/simulate/noise.hpp"
 
@@ -299,21 +298,6 @@ TEST(Drift, IsAsLargeAsAskedForAndZeroInTheMiddle) {
   for (double x = 0.0; x < 9.99; x += 0.01) {
     EXPECT_LT((drift.at(x + 0.01, 1.0) - drift.at(x, 1.0)).norm(), 0.002);
   }
-}
-
-TEST(FitAffine, RecoversAnAffineInUtmCoordinates) {
-  ::agricolmap::Random random(4);
-  Eigen::Affine3d truth = Eigen::Affine3d::Identity();
-  truth.linear() << 0.9, -0.2, 0.01, 0.25, 1.1, 0.0, 0.02, -0.01, 1.0;
-  truth.translation() << 352000.0, 4815000.0, 120.0;
-  std::vector<Eigen::Vector3d> from;
-  std::vector<Eigen::Vector3d> to;
-  for (int i = 0; i < 2000; ++i) {
-    from.emplace_back(random.uniform(0.0, 10.0), random.uniform(0.0, 2.0), random.normal(0.05));
-    to.push_back(truth * from.back());
-  }
-  const Eigen::Affine3d fit = fitAffine(from, to);
-  for (const Eigen::Vector3d& p : from) EXPECT_LT((fit * p - truth * p).norm(), 1e-6);
 }
 
 TEST(Noise, TilesAgreeWithPointsAndHaveUnitDeviation) {
