@@ -144,20 +144,11 @@ void requireExtent(const Cloud& cloud, const Points& points) {
   }
 }
 
-}  // namespace
-
-Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local,
-                     const LevelOptions& options) {
-  checkOptions(options);
-  if (cloud.empty()) throw InputError(fmt::format("{}: the cloud has no points", cloud.name));
-  const Points points = samplePoints(cloud, guess_from_local);
-  requireExtent(cloud, points);
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : points) centre += p;
-  centre /= static_cast<double>(points.size());
-
+/// Levels `points` about `centre`, beginning with the frame `start`.
+Levelling levelFrom(const Eigen::Affine3d& start, const Cloud& cloud, const Points& points,
+                    const Eigen::Vector3d& centre, const LevelOptions& options) {
   Levelling result;
-  Eigen::Affine3d levelled = uprightAbout(centre, roughNormal(points, centre));
+  Eigen::Affine3d levelled = start;
   // A cell's low percentile is only its ground once the ground is nearly level: hence three rounds.
   for (int round = 0; round < 3; ++round) {
     Points turned(points.size());
@@ -179,13 +170,34 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
     result.cells = low.size();
   }
   result.tilt = std::acos(std::clamp(levelled.linear()(2, 2), -1.0, 1.0));
+  result.levelled_from_guess = Eigen::Translation3d(0.0, 0.0, -centre.z()) * levelled;
+  return result;
+}
+
+}  // namespace
+
+Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local,
+                     const LevelOptions& options) {
+  checkOptions(options);
+  if (cloud.empty()) throw InputError(fmt::format("{}: the cloud has no points", cloud.name));
+  const Points points = samplePoints(cloud, guess_from_local);
+  requireExtent(cloud, points);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) centre += p;
+  centre /= static_cast<double>(points.size());
+
+  // The plane through all points is a start that any tilt has, but a narrow strip of a tall crop is
+  // as thick as it is wide, and its plane may stand on edge: then upright is the better start.
+  Levelling result = levelFrom(Eigen::Affine3d::Identity(), cloud, points, centre, options);
+  const Levelling other =
+      levelFrom(uprightAbout(centre, roughNormal(points, centre)), cloud, points, centre, options);
+  if (other.roughness < 0.8 * result.roughness) result = other;
   if (result.tilt > options.max_tilt_deg * std::numbers::pi / 180.0) {
     throw InputError(fmt::format(
         "{}: its ground plane is tilted by {:.0f} deg (level.max_tilt_deg is {}); z must point up: "
         "give the cloud's attitude in offset.xyz or --prior",
         cloud.name, result.tilt * 180.0 / std::numbers::pi, options.max_tilt_deg));
   }
-  result.levelled_from_guess = Eigen::Translation3d(0.0, 0.0, -centre.z()) * levelled;
   return result;
 }
 

@@ -44,6 +44,20 @@ TEST(Level, FindsTheGroundUnderPlantsAndFlyingPoints) {
   }
 }
 
+// As thick as it is wide: the plane through all its points stands on edge.
+TEST(Level, ANarrowStripOfATallCropStandsUpright) {
+  Random random(8);
+  Cloud cloud;
+  cloud.name = "maize";
+  for (int i = 0; i < 50000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    if (random.chance(0.7)) p.z() += random.chance(0.5) ? 0.2 : 2.2;
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_LT(level.tilt, 0.02);
+}
+
 TEST(Level, RefusesCloudsThatAreNoMap) {
   Cloud cloud;
   cloud.name = "bad";

@@ -31,6 +31,16 @@ Eigen::Vector2d horizontalScales(const Eigen::Affine3d& affine) {
   return {affine.linear().col(0).norm(), affine.linear().col(1).norm()};
 }
 
+/// The rotation of the horizontal plane: the nearest one to what becomes of x and y. What becomes
+/// of z is hardly seen in a map a few centimetres thick, and a least-squares affine shears there
+/// freely (one semi-real pair at 2 cm RMS had 0.13 rad by it).
+Eigen::Matrix3d groundRotation(const Eigen::Matrix3d& linear) {
+  Eigen::Matrix3d upright = linear;
+  const double stretch = std::sqrt(linear.col(0).norm() * linear.col(1).norm());
+  upright.col(2) = stretch * linear.col(0).cross(linear.col(1)).normalized();
+  return nearestRotation(upright);
+}
+
 }  // namespace
 
 RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Truth& truth,
@@ -65,7 +75,7 @@ RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Trut
   const Eigen::Vector3d centre = moving.origin + meanPoint(moving);
   errors.translation = (estimate * centre - truth.best_affine * centre).norm();
   const Eigen::Matrix3d difference =
-      nearestRotation(estimate.linear()).transpose() * nearestRotation(truth.best_affine.linear());
+      groundRotation(estimate.linear()).transpose() * groundRotation(truth.best_affine.linear());
   errors.rotation = std::acos(std::clamp((difference.trace() - 1.0) / 2.0, -1.0, 1.0));
   errors.scale = (horizontalScales(estimate).cwiseQuotient(horizontalScales(truth.best_affine)) -
                   Eigen::Vector2d::Ones())

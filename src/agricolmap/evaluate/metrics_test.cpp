@@ -51,6 +51,13 @@ TEST(Metrics, ShiftAndScaleAreSeenWhereTheyAre) {
   EXPECT_NEAR(evaluateTransform(scaled, truth, cloud).scale, 0.05, 1e-9);
 }
 
+TEST(Metrics, ShearOfWhatAFlatMapDoesNotShowIsNoRotation) {
+  const Cloud cloud = strip();
+  Eigen::Affine3d sheared = someAffine();
+  sheared.linear().col(2) += 0.3 * sheared.linear().col(0);
+  EXPECT_NEAR(evaluateTransform(sheared, {someAffine(), {}}, cloud).rotation, 0.0, 1e-6);
+}
+
 TEST(Metrics, NumbersOfPointsMustAgree) {
   const Cloud cloud = strip();
   const Truth truth{someAffine(), {Eigen::Vector3d::Zero()}};
