@@ -14,6 +14,8 @@ namespace {
 // Cells of a level in grid cells: 12, 6, 4 and 2 cm with the default grid.
 constexpr std::array<int, 4> kFactors = {6, 3, 2, 1};
 constexpr std::size_t kRankingLevel = 1;
+/// Finer cells must have at least this share of the coarser ones' overlap.
+constexpr double kLeastFinerOverlap = 0.5;
 
 }  // namespace
 
@@ -33,7 +35,7 @@ std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level,
   const DenseRefineResult dense =
       refineDense(level.fixed, level.moving, start.pose, options_.dense);
   if (dense.status != RefineStatus::kConverged) return std::nullopt;
-  return RefinedPose{dense.fixed_from_moving, start.significance};
+  return RefinedPose{dense.fixed_from_moving, start.significance, dense.overlap};
 }
 
 RefineOutcome PoseRefinement::refineDensely(
@@ -53,8 +55,12 @@ RefineOutcome PoseRefinement::refineDensely(
     if (!outcome.best || pose->significance > outcome.best->significance) outcome.best = pose;
   }
   counts.emplace_back("refined_placements", survivors);
+  // What the finest cells cannot follow (a map with fewer points than cells has hardly two seen
+  // side by side) stays as the coarser ones left it; whether it is right is for the verdict to say.
   for (std::size_t level = kRankingLevel + 1; level < levels_.size() && outcome.best; ++level) {
-    outcome.best = refineAt(levels_[level], *outcome.best);
+    const std::optional<RefinedPose> finer = refineAt(levels_[level], *outcome.best);
+    if (!finer || finer->overlap < kLeastFinerOverlap * outcome.best->overlap) break;
+    outcome.best = finer;
   }
   if (!outcome.best) {
     outcome.failure =
@@ -88,7 +94,8 @@ RefineOutcome PoseRefinement::refineByPoints(
   if (!result.usable()) {
     return {std::nullopt, fmt::format("the point refinement failed: {}", describe(result.status))};
   }
-  return {RefinedPose{result.pose.plane, meter_->significance(result.pose.plane)}, ""};
+  return {RefinedPose{result.pose.plane, meter_->significance(result.pose.plane), start.overlap},
+          ""};
 }
 
 RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, StageTimes& times,
@@ -101,7 +108,7 @@ RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, S
     for (std::size_t i = 0; i < placements.size(); ++i) {
       const AffineEstimate fit =
           estimateAffine(placements[i].matches, space_.scale_axes, options_.affine);
-      if (fit.ok()) poses[i] = RefinedPose{fit.fixed_from_moving, 0.0};
+      if (fit.ok()) poses[i] = RefinedPose{fit.fixed_from_moving};
     }
   });
   return times.run("refine", [&]() -> RefineOutcome {

@@ -16,6 +16,7 @@ namespace agricolmap {
 struct RefinedPose {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
   double significance = 0.0;  ///< whitened score at the ranking level, see EvidenceMeter
+  double overlap = 0.0;       ///< share of the moving map's cells with a fixed cell to compare with
 };
 
 /// The winner, or why there is none.
