@@ -19,7 +19,7 @@ namespace {
 
 std::optional<std::filesystem::path> soybeanFolder() {
   const char* const shared = std::getenv("AGRICOLMAP_SHARED");
-  const std::filesystem::path folder =
+  std::filesystem::path folder =
       std::filesystem::path(shared != nullptr ? shared : AGRICOLMAP_SHARED_DEFAULT) /
       "data/soybean_pliman";
   if (!std::filesystem::exists(folder / "soy_ortho.tif")) return std::nullopt;

@@ -42,7 +42,7 @@ std::string programPath() {
 
 [[noreturn]] void becomeProgram(std::vector<char*>& argv, const Pipe& out, const Pipe& err) {
   const int nothing = ::open("/dev/null", O_RDONLY);
-  ::dup2(nothing, STDIN_FILENO);
+  if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) ::_exit(127);
   ::dup2(out.write_end, STDOUT_FILENO);
   ::dup2(err.write_end, STDERR_FILENO);
   ::execv(argv[0], argv.data());

@@ -35,7 +35,7 @@ const Registration& plainRegistration() {
 const PictureInfo kInfo{"field/uav/point_cloud.ply", "field/ugv_1/point_cloud.ply", {}};
 
 TEST_F(Pictures, AllAreWrittenAndDecode) {
-  const Registration registration = plainRegistration();
+  const Registration& registration = plainRegistration();
   const std::vector<std::string> names = writePictures(dir_, registration, kInfo);
   EXPECT_EQ(names.size(), 5U);
   EXPECT_EQ(names, pictureNames());
@@ -61,7 +61,7 @@ TEST_F(Pictures, RegistrationTurnsFringesWhite) {
 }
 
 TEST_F(Pictures, SameOnAnyNumberOfThreads) {
-  const Registration registration = plainRegistration();
+  const Registration& registration = plainRegistration();
   const auto bytes = [&](const std::string& name) {
     std::ostringstream content;
     content << std::ifstream(dir_ / name, std::ios::binary).rdbuf();
@@ -137,7 +137,7 @@ TEST_F(Pictures, OddNamesDoNotSpoilThem) {
 }
 
 TEST_F(Pictures, FailuresToWriteAreOutputErrors) {
-  const Registration registration = plainRegistration();
+  const Registration& registration = plainRegistration();
   EXPECT_THROW(writePictures(dir_ / "missing", registration, kInfo), OutputError);
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   fs::create_symlink("/dev/full", dir_ / "flow.png");

@@ -39,7 +39,8 @@ class Picture {
     std::memcpy(
         &value,
         cairo_image_surface_get_data(surface_.get()) +
-            static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(surface_.get()) + 4 * x,
+            static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(surface_.get()) +
+            std::ptrdiff_t{4} * x,
         4);
     return value & 0xFFFFFFU;
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/simulate/noise.hpp"
@@ -24,7 +26,7 @@ OrthoField stripedField() {
   field.colour = Raster<Rgb>(600, 700);
   for (int r = 0; r < 600; ++r) {
     for (int c = 0; c < 700; ++c) {
-      const bool row = r % 40 < 12 && noiseAt(5, c / 9.0, static_cast<double>(r / 40)) > -0.3F;
+      const bool row = r % 40 < 12 && noiseAt(5, c / 9.0, std::floor(r / 40.0)) > -0.3F;
       field.colour(r, c) = row ? Rgb{70, 130, 50} : Rgb{130, 110, 95};
     }
   }
