@@ -31,6 +31,7 @@ struct RegisterArguments {
   std::string config;
   std::string preset = "default";
   std::string prior_sigma;
+  bool scale_unknown = false;
   bool dump_config = false;
   bool keep_rejected = false;
   bool no_pictures = false;
@@ -40,7 +41,9 @@ struct RegisterArguments {
 /// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, each value within its option's limits.
 void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const OptionTable& table) {
   if (text == "none") {
+    const bool scale_unknown = prior.scale_unknown;
     prior = PriorUncertainty::none();
+    prior.scale_unknown = scale_unknown;
     return;
   }
   const std::vector<std::string> parts = CLI::detail::split(text, ',');
@@ -70,6 +73,7 @@ RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Glob
   OptionTable table = optionTable(options);
   if (!arguments.config.empty()) loadYaml(arguments.config, table);
   if (!arguments.prior_sigma.empty()) applyPriorSigma(arguments.prior_sigma, options.prior, table);
+  if (arguments.scale_unknown) options.prior.scale_unknown = true;
   arguments.flags.apply(table);
   return options;
 }
@@ -186,7 +190,15 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   stale.insert(stale.end(), {"transform.txt", "aligned.ply"});
   output.commit(stale);
   if (!globals.quiet) printSummary(result, arguments.output);
-  return result.verdict.status == Status::kAccepted ? ExitCode::kOk : ExitCode::kRejected;
+  switch (result.verdict.status) {
+    case Status::kAccepted:
+      return ExitCode::kOk;
+    case Status::kAmbiguous:
+      return ExitCode::kAmbiguous;
+    case Status::kRejected:
+      break;
+  }
+  return ExitCode::kRejected;
 }
 
 }  // namespace
@@ -205,6 +217,9 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
       "--prior-sigma", arguments->prior_sigma,
       "How wrong the initial guess may be: T_M,HEADING_DEG,SCALE_PERCENT, or 'none' "
       "for no guess: any place and heading [5,11.5,30]");
+  command->add_flag("--scale-unknown", arguments->scale_unknown,
+                    "MOVING is in unknown units: find its overall scale, too, a factor from 0.1 to "
+                    "10");
   command->add_option("--preset", arguments->preset, "default, paper or paper-literal [default]");
   command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,

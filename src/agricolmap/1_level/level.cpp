@@ -29,6 +29,12 @@ namespace {
 constexpr std::size_t kMaxSamples = 200'000;
 constexpr std::size_t kMinPointsPerCell = 3;
 constexpr double kMinExtent = 0.2;  // [m]
+/// A plane found from upright and no steeper than this needs no other start [rad].
+constexpr double kPlainlyUpright = 0.1;
+/// Another plane must be smoother than the upright one's by these factors; the latter if it is too
+/// steep for a field.
+constexpr double kSmoother = 0.8;
+constexpr double kFarSmoother = 0.25;
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -186,13 +192,18 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
   for (const Eigen::Vector3d& p : points) centre += p;
   centre /= static_cast<double>(points.size());
 
-  // The plane through all points is a start that any tilt has, but a narrow strip of a tall crop is
-  // as thick as it is wide, and its plane may stand on edge: then upright is the better start.
   Levelling result = levelFrom(Eigen::Affine3d::Identity(), cloud, points, centre, options);
-  const Levelling other =
-      levelFrom(uprightAbout(centre, roughNormal(points, centre)), cloud, points, centre, options);
-  if (other.roughness < 0.8 * result.roughness) result = other;
-  if (result.tilt > options.max_tilt_deg * std::numbers::pi / 180.0) {
+  const double limit = options.max_tilt_deg * std::numbers::pi / 180.0;
+  // From upright, a steep plane is not always found; the plane through all points is a start that
+  // any tilt has. But a narrow strip of a tall crop is as thick as it is wide, and its plane may
+  // stand on edge: then upright was the better start.
+  if (result.tilt > kPlainlyUpright) {
+    const Levelling other = levelFrom(uprightAbout(centre, roughNormal(points, centre)), cloud,
+                                      points, centre, options);
+    const double factor = other.tilt <= limit ? kSmoother : kFarSmoother;
+    if (other.roughness < factor * result.roughness) result = other;
+  }
+  if (result.tilt > limit) {
     throw InputError(fmt::format(
         "{}: its ground plane is tilted by {:.0f} deg (level.max_tilt_deg is {}); z must point up: "
         "give the cloud's attitude in offset.xyz or --prior",

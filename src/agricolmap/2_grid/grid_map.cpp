@@ -225,4 +225,34 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
   return map;
 }
 
+GridMap croppedMap(const GridMap& map, const Box2& window) {
+  const Eigen::Vector2d low = map.frame.cellOf(window.min());
+  const Eigen::Vector2d high = map.frame.cellOf(window.max());
+  const auto within = [](double at, int count) {
+    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count)));
+  };
+  const int row0 = within(std::floor(low.y()), map.frame.rows);
+  const int col0 = within(std::floor(low.x()), map.frame.cols);
+  GridMap part;
+  part.frame = map.frame;
+  part.frame.corner += map.frame.cell * Eigen::Vector2d(col0, row0);
+  part.frame.rows = std::max(0, within(std::ceil(high.y()) + 1.0, map.frame.rows) - row0);
+  part.frame.cols = std::max(0, within(std::ceil(high.x()) + 1.0, map.frame.cols) - col0);
+  const auto cut = [&]<typename T>(const Raster<T>& from, Raster<T>& to) {
+    to = Raster<T>(part.frame.rows, part.frame.cols);
+    for (int r = 0; r < part.frame.rows; ++r) {
+      std::copy_n(from.row(row0 + r) + col0, part.frame.cols, to.row(r));
+    }
+  };
+  cut(map.weight, part.weight);
+  cut(map.height, part.height);
+  cut(map.exg, part.exg);
+  cut(map.colour, part.colour);
+  cut(map.nearest, part.nearest);
+  part.points = map.points;
+  part.filled = static_cast<std::size_t>(
+      std::count_if(part.weight.begin(), part.weight.end(), [](float w) { return w > 0.0F; }));
+  return part;
+}
+
 }  // namespace agricolmap

@@ -53,4 +53,7 @@ using Box2 = Eigen::AlignedBox2d;
 GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options);
 
+/// The part of a map whose cells touch `window`; `points` stays the whole map's.
+GridMap croppedMap(const GridMap& map, const Box2& window);
+
 }  // namespace agricolmap

@@ -13,6 +13,8 @@ void describe(OptionTable& table, PriorUncertainty& options) {
                "how far off its heading may be (paper: 11.5)");
   table.number("scale", options.scale, 0.0, 0.5, "",
                "how far off each horizontal scale may be, relative (paper: 0.30)");
+  table.flag("scale_unknown", options.scale_unknown,
+             "the moving file's unit is not known: an overall factor from 0.1 to 10 is found, too");
 }
 
 PriorUncertainty PriorUncertainty::none() {

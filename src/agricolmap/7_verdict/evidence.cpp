@@ -22,6 +22,17 @@ void describe(OptionTable& table, EvidenceOptions& options) {
 namespace {
 
 constexpr double kMinSeenShare = 0.3;  // of a block's area, in both maps
+/// As many blocks as a share of agreeing ones needs to mean something, and their least side [m]:
+/// smaller ones hold too little to be placed alone.
+constexpr double kFewestBlocks = 12.0;
+constexpr double kLeastBlock = 0.6;
+
+/// Vertex of the parabola through three values, in steps from the middle one.
+double vertex(float before, float here, float after) {
+  const float bend = before - 2.0F * here + after;
+  return bend < 0.0F ? std::clamp(static_cast<double>(0.5F * (before - after) / bend), -0.5, 0.5)
+                     : 0.0;
+}
 
 double surfaceDeviation(const ComplexRaster& surface) {
   double sum2 = 0.0;
@@ -60,6 +71,12 @@ Peak highest(const ComplexRaster& surface, const Fft2& fft, const GridFrame& fra
 
 }  // namespace
 
+double blockSide(const StripFrame& strip, const EvidenceOptions& options) {
+  const double area = 4.0 * strip.half_extent.prod();
+  return std::clamp(std::sqrt(area / kFewestBlocks), std::min(kLeastBlock, options.block),
+                    options.block);
+}
+
 EvidenceMeter::EvidenceMeter(const SignalMap& fixed, const SignalMap& moving,
                              const EvidenceOptions& options)
     : moving_(moving),
@@ -96,6 +113,45 @@ double EvidenceMeter::significance(const Eigen::Affine2d& pose) const {
   return deviation > 0.0 ? peak.value / deviation : 0.0;
 }
 
+double EvidenceMeter::distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const {
+  double largest = 0.0;
+  for (const double u : {-1.0, 1.0}) {
+    for (const double v : {-1.0, 1.0}) {
+      const Eigen::Vector2d corner =
+          strip_.world({u * strip_.half_extent.x(), v * strip_.half_extent.y()});
+      largest = std::max(largest, (a * corner - b * corner).norm());
+    }
+  }
+  return largest;
+}
+
+Raster<float> EvidenceMeter::blockScores(const Template& piece, const Eigen::Vector2d& at,
+                                         int reach) const {
+  const Raster<float>& green = filter_.whitenedGreenness();
+  const Raster<float>& high = filter_.whitenedHeight();
+  Raster<float> scores(2 * reach + 1, 2 * reach + 1);
+  const int row0 = static_cast<int>(std::lround(at.y())) + piece.first_row - reach;
+  const int col0 = static_cast<int>(std::lround(at.x())) + piece.first_col - reach;
+  for (int r = 0; r < piece.re.rows(); ++r) {
+    for (int c = 0; c < piece.re.cols(); ++c) {
+      const float g = piece.re(r, c);
+      const float h = piece.im(r, c);
+      if (g == 0.0F && h == 0.0F) continue;
+      for (int dr = 0; dr < scores.rows(); ++dr) {
+        const int row = row0 + r + dr;
+        if (row < 0 || row >= fixed_.frame.rows) continue;
+        const int first = std::max(0, -(col0 + c));
+        const int last = std::min(scores.cols(), fixed_.frame.cols - (col0 + c));
+        const float* from_green = green.row(row) + col0 + c;
+        const float* from_high = high.row(row) + col0 + c;
+        float* to = scores.row(dr);
+        for (int dc = first; dc < last; ++dc) to[dc] += g * from_green[dc] + h * from_high[dc];
+      }
+    }
+  }
+  return scores;
+}
+
 BlockEvidence EvidenceMeter::placeBlock(const Block& block, const Eigen::Affine2d& pose,
                                         bool& usable) const {
   const double cell = fixed_.frame.cell;
@@ -104,32 +160,51 @@ BlockEvidence EvidenceMeter::placeBlock(const Block& block, const Eigen::Affine2
                    options_.filter.height_weight,
                    [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
   BlockEvidence evidence;
+  evidence.moving = block.centre;
   evidence.place = pose * block.centre;
   const Eigen::Vector2d at = fixed_.frame.cellOf(evidence.place);
   const Eigen::Vector2d size = (block.high - block.low) / cell;
   const double area = size.prod() * std::abs(pose.linear().determinant());
-  double seen = 0.0;
-  const double half = 0.5 * size.norm();
+  usable = piece.filled >= kMinSeenShare * area && seenAround(at, 0.5 * size.norm());
+  if (!usable) return evidence;
+  const int reach = static_cast<int>(std::ceil(options_.block_reach / cell));
+  const Raster<float> scores = blockScores(piece, at, reach);
+  // The scores' middle is the whole cell nearest to the predicted place.
+  const Eigen::Vector2d rounding = at.array().round().matrix() - at;
+  int best_row = reach, best_col = reach;
+  for (int r = 0; r < scores.rows(); ++r) {
+    for (int c = 0; c < scores.cols(); ++c) {
+      if (std::hypot(r - reach, c - reach) * cell > options_.block_reach) continue;
+      if (scores(r, c) > scores(best_row, best_col)) best_row = r, best_col = c;
+    }
+  }
+  Eigen::Vector2d peak(best_col - reach, best_row - reach);
+  if (best_row > 0 && best_row + 1 < scores.rows() && best_col > 0 &&
+      best_col + 1 < scores.cols()) {
+    peak.x() += vertex(scores(best_row, best_col - 1), scores(best_row, best_col),
+                       scores(best_row, best_col + 1));
+    peak.y() += vertex(scores(best_row - 1, best_col), scores(best_row, best_col),
+                       scores(best_row + 1, best_col));
+  }
+  evidence.offset = cell * (peak + rounding);
+  evidence.agrees = evidence.offset.norm() <= options_.agreement;
+  return evidence;
+}
+
+bool EvidenceMeter::seenAround(const Eigen::Vector2d& at, double half) const {
   double looked = 0.0;
+  double seen = 0.0;
   for (int r = static_cast<int>(at.y() - half); r <= static_cast<int>(at.y() + half); ++r) {
     for (int c = static_cast<int>(at.x() - half); c <= static_cast<int>(at.x() + half); ++c) {
       looked += 1.0;
       if (fixed_.weight.contains(r, c) && fixed_.weight(r, c) > 0.0F) seen += 1.0;
     }
   }
-  usable = piece.filled >= kMinSeenShare * area && seen >= kMinSeenShare * looked;
-  if (!usable) return evidence;
-  ComplexRaster surface(filter_.fft().size());
-  MatchedFilter::Work work(filter_);
-  filter_.correlate(piece, surface, work);
-  const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, options_.block_reach / cell,
-                            [](const Eigen::Vector2d&) { return true; });
-  evidence.offset = cell * (peak.at - at);
-  evidence.agrees = evidence.offset.norm() <= options_.agreement;
-  return evidence;
+  return seen >= kMinSeenShare * looked;
 }
 
-Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const SearchSpace& space) const {
+Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const SearchSpace& space,
+                                double rival) const {
   const double cell = fixed_.frame.cell;
   Evidence evidence;
   Eigen::Vector2d at;
@@ -145,9 +220,11 @@ Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const SearchSpace& 
   if (deviation > 0.0) {
     evidence.significance = peak.value / deviation;
     // Next to nothing else in reach: compared with one deviation, what chance gives anywhere.
-    evidence.uniqueness = peak.value / std::max(other.value, deviation);
+    evidence.uniqueness =
+        evidence.significance / std::max({other.value / deviation, rival, 1.0});
   }
-  const std::vector<Block> blocks = cutBlocks(moving_, strip_, options_.block);
+  evidence.block_side = blockSide(strip_, options_);
+  const std::vector<Block> blocks = cutBlocks(moving_, strip_, evidence.block_side);
   std::vector<BlockEvidence> placed(blocks.size());
   std::vector<char> usable(blocks.size(), 0);
   parallelFor(blocks.size(), [&](std::size_t i) {

@@ -13,7 +13,7 @@
 namespace agricolmap {
 
 struct EvidenceOptions {
-  double block = 1.2;        ///< side of the blocks that are placed alone [m]
+  double block = 1.2;        ///< side of the blocks that are placed alone, at most [m]
   double block_reach = 0.5;  ///< how far from its predicted place a block is looked for [m]
   double agreement = 0.08;   ///< a block agrees when its best place is this near [m]
   double exclusion = 0.35;   ///< other peaks are counted from this distance on [m]
@@ -23,6 +23,7 @@ void describe(OptionTable& table, EvidenceOptions& options);
 
 /// One block of the moving map, placed alone.
 struct BlockEvidence {
+  Eigen::Vector2d moving = Eigen::Vector2d::Zero();  ///< its centre, moving levelled frame [m]
   Eigen::Vector2d place = Eigen::Vector2d::Zero();   ///< predicted centre, fixed frame [m]
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< best place − predicted place [m]
   bool agrees = false;
@@ -30,7 +31,8 @@ struct BlockEvidence {
 
 struct Evidence {
   double significance = 0.0;  ///< peak over the deviation of the score over the searched shifts
-  double uniqueness = 0.0;    ///< peak over the highest other peak of the searched shifts
+  double uniqueness = 0.0;    ///< peak over the highest other one, of shifts and of placements
+  double block_side = 0.0;    ///< [m]
   std::vector<BlockEvidence> blocks;  ///< those with enough seen cells in both maps
   std::size_t agreeing = 0;
   double agreement() const {
@@ -38,6 +40,9 @@ struct Evidence {
                           : static_cast<double>(agreeing) / static_cast<double>(blocks.size());
   }
 };
+
+/// Side of the blocks [m]: at least a dozen of them where the strip is large enough for that.
+double blockSide(const StripFrame& strip, const EvidenceOptions& options);
 
 /// Measures evidence for poses of one pair at one cell size.
 class EvidenceMeter {
@@ -47,14 +52,22 @@ class EvidenceMeter {
   /// Whitened score of the whole moving map under `pose`, in deviations of the score over the map:
   /// comparable between poses of the pair, since it does not grow when a map shrinks.
   double significance(const Eigen::Affine2d& pose) const;
-  /// Everything, with other peaks sought among the shifts that `space` allows.
-  Evidence measure(const Eigen::Affine2d& pose, const SearchSpace& space) const;
+  /// Everything. Other peaks are sought among the shifts that `space` allows; `rival` is the
+  /// significance of the best other placement, whatever its heading and scales, 0 if there is none.
+  Evidence measure(const Eigen::Affine2d& pose, const SearchSpace& space, double rival) const;
+
+  /// Largest distance between where two poses put a corner of the strip [m].
+  double distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const;
 
  private:
   /// Scores of all shifts of the whole map under the pose's linear part; `at` is the cell that the
   /// pose predicts.
   ComplexRaster wholeSurface(const Eigen::Affine2d& pose, Eigen::Vector2d& at) const;
   BlockEvidence placeBlock(const Block& block, const Eigen::Affine2d& pose, bool& usable) const;
+  /// Whether the fixed map has seen enough of the square of half a side `half` around a cell.
+  bool seenAround(const Eigen::Vector2d& at, double half) const;
+  /// Scores of a block's shifts by up to `reach` cells, the unshifted one in the middle.
+  Raster<float> blockScores(const Template& piece, const Eigen::Vector2d& at, int reach) const;
 
   const SignalMap& moving_;
   const SignalMap& fixed_;

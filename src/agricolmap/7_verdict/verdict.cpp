@@ -2,22 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "agricolmap/7_verdict/probability.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap {
 
 const char* toString(Status status) {
-  return status == Status::kAccepted ? "accepted" : "rejected";
+  switch (status) {
+    case Status::kAccepted:
+      return "accepted";
+    case Status::kAmbiguous:
+      return "ambiguous";
+    case Status::kRejected:
+      break;
+  }
+  return "rejected";
 }
 
 void describe(OptionTable& table, VerdictOptions& options) {
+  table.number("min_probability", options.min_probability, 0.0, 1.0, "",
+               "least probability of being within 5 cm RMS of the truth");
   table.number("min_uniqueness", options.min_uniqueness, 0.0, 100.0, "",
-               "least ratio of the peak to the highest other peak that the guess allows");
-  table.number("min_agreement", options.min_agreement, 0.0, 1.0, "",
-               "least share of the blocks that, placed alone, agree with the registration");
+               "least ratio of the peak to the highest other one, whatever else speaks for it");
+  table.number("rival", options.rival, 0.0, 1.0, "",
+               "other placements with this share of the best one's significance rival it");
+  table.number("min_fit", options.min_fit, 0.0, 1000.0, "deviations",
+               "significance from which on rivals mean ambiguity, not chance");
   table.number("min_overlap", options.min_overlap, 0.0, 1.0, "",
                "least share of the moving map that must lie on the fixed map");
   table.number("scale_margin", options.scale_margin, 0.0, 1.0, "",
@@ -26,31 +41,27 @@ void describe(OptionTable& table, VerdictOptions& options) {
                "how far beyond the prior's limit the heading may come out");
 }
 
-Verdict rejectBecause(std::string reason) { return {Status::kRejected, {std::move(reason)}}; }
+Verdict rejectBecause(std::string reason) { return {Status::kRejected, {std::move(reason)}, 0.0}; }
 
-Verdict judge(const Evidence& evidence, double overlap, const Eigen::Affine2d& pose,
-              const SearchSpace& space, const VerdictOptions& options) {
+namespace {
+
+// Below these a piece of evidence is worth a sentence in the reasons of a refusal.
+constexpr double kWeakUniqueness = 1.8;
+constexpr double kWeakAgreement = 0.55;
+constexpr double kLargeError = 0.03;  // [m]
+
+/// What no evidence can outweigh.
+std::vector<std::string> contradictions(const Finding& finding, const SearchSpace& space,
+                                        const VerdictOptions& options) {
   std::vector<std::string> against;
-  if (overlap < options.min_overlap) {
+  if (finding.overlap < options.min_overlap) {
     against.push_back(
         fmt::format("only {:.0f} % of the moving map lies on the fixed map (at least "
                     "{:.0f} % needed)",
-                    100 * overlap, 100 * options.min_overlap));
-  }
-  if (evidence.uniqueness < options.min_uniqueness) {
-    against.push_back(
-        fmt::format("another place fits almost as well: the peak is {:.2f} times the "
-                    "highest other one (at least {:.2f} needed)",
-                    evidence.uniqueness, options.min_uniqueness));
-  }
-  if (evidence.agreement() < options.min_agreement) {
-    against.push_back(
-        fmt::format("only {} of {} blocks, placed alone, agree with the whole (at "
-                    "least {:.0f} % needed)",
-                    evidence.agreeing, evidence.blocks.size(), 100 * options.min_agreement));
+                    100 * finding.overlap, 100 * options.min_overlap));
   }
   const HorizontalParts parts =
-      splitHorizontal(space.scale_axes.transpose() * pose.linear() * space.scale_axes);
+      splitHorizontal(space.scale_axes.transpose() * finding.pose.linear() * space.scale_axes);
   const double scale_limit = std::exp(logScaleLimit(space.uncertainty)) + options.scale_margin;
   for (const auto& [axis, scale] : {std::pair{"x", parts.scale_x}, {"y", parts.scale_y}}) {
     if (!(scale < scale_limit && scale > 1.0 / scale_limit)) {
@@ -67,11 +78,90 @@ Verdict judge(const Evidence& evidence, double overlap, const Eigen::Affine2d& p
                     "{:.1f} deg",
                     heading, space.uncertainty.heading_deg));
   }
-  if (!against.empty()) return {Status::kRejected, against};
-  return {Status::kAccepted,
-          {fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness),
-           fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
-                       evidence.blocks.size())}};
+  return against;
+}
+
+double expectedError(const Finding& finding) {
+  if (!finding.uncertainty) return std::numeric_limits<double>::infinity();
+  return std::hypot(finding.uncertainty->expected_rms, finding.uncertainty->local_rms);
+}
+
+/// What weakens a registration that is not likely enough.
+std::vector<std::string> doubts(const Finding& finding, double probability,
+                                const VerdictOptions& options) {
+  const Evidence& evidence = finding.evidence;
+  std::vector<std::string> against;
+  if (evidence.uniqueness < std::max(kWeakUniqueness, options.min_uniqueness)) {
+    against.push_back(
+        fmt::format("another place fits almost as well: the peak is {:.2f} times the "
+                    "highest other one",
+                    evidence.uniqueness));
+  }
+  if (evidence.agreement() < kWeakAgreement) {
+    against.push_back(fmt::format("only {} of {} blocks, placed alone, agree with the whole",
+                                  evidence.agreeing, evidence.blocks.size()));
+  }
+  const double error = expectedError(finding);
+  if (!(error < kLargeError)) {
+    against.push_back(std::isfinite(error)
+                          ? fmt::format("the blocks of the strip disagree with it by {:.1f} cm RMS",
+                                        100 * error)
+                          : std::string("too few blocks of the strip can be compared"));
+  }
+  if (probability < options.min_probability) {
+    against.push_back(
+        fmt::format("the probability of being within 5 cm of the truth is {:.1f} % (at "
+                    "least {:.0f} % needed)",
+                    100 * probability, 100 * options.min_probability));
+  }
+  return against;
+}
+
+std::vector<std::string> support(const Finding& finding, double probability) {
+  const Evidence& evidence = finding.evidence;
+  std::vector<std::string> reasons = {
+      fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness),
+      fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
+                  evidence.blocks.size()),
+      fmt::format("the probability of being within 5 cm of the truth is {:.1f} %",
+                  100 * probability)};
+  if (finding.uncertainty) {
+    reasons.push_back(
+        fmt::format("expected error {:.1f} cm RMS over the strip; {:.1f} cm of local deformation "
+                    "remain that no affine undoes",
+                    100 * finding.uncertainty->expected_rms, 100 * finding.uncertainty->local_rms));
+  }
+  return reasons;
+}
+
+}  // namespace
+
+Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options) {
+  std::vector<std::string> against = contradictions(finding, space, options);
+  if (!against.empty()) return {Status::kRejected, std::move(against), 0.0};
+  const Evidence& evidence = finding.evidence;
+  const double unknown = std::numeric_limits<double>::infinity();
+  double probability = rightProbability(
+      {evidence.uniqueness, evidence.significance, evidence.agreeing, evidence.blocks.size(),
+       finding.uncertainty ? finding.uncertainty->expected_rms : unknown,
+       finding.uncertainty ? finding.uncertainty->local_rms : unknown});
+  const auto rivals =
+      std::count_if(finding.rivals.begin(), finding.rivals.end(), [&](double significance) {
+        return significance >= options.rival * evidence.significance;
+      });
+  if (rivals > 0 && evidence.significance >= options.min_fit) {
+    // Right at most as often as the best of so many equals is the true one.
+    probability = std::min(probability, 1.0 / (1.0 + static_cast<double>(rivals)));
+    return {Status::kAmbiguous,
+            {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
+                         "a better initial guess (--prior, --prior-sigma) can",
+                         rivals + 1)},
+            probability};
+  }
+  if (probability < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
+    return {Status::kRejected, doubts(finding, probability, options), probability};
+  }
+  return {Status::kAccepted, support(finding, probability), probability};
 }
 
 }  // namespace agricolmap

@@ -1,4 +1,5 @@
-// Stage 8: accept or reject, from evidence, with the reasons in plain words.
+// Stage 8: accept, reject or say that the data cannot tell, from evidence, with the reasons in
+// plain words.
 #pragma once
 
 #include <string>
@@ -6,17 +7,21 @@
 
 #include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/7_verdict/evidence.hpp"
+#include "agricolmap/7_verdict/uncertainty.hpp"
 #include "agricolmap/core/options.hpp"
 
 namespace agricolmap {
 
-enum class Status { kAccepted, kRejected };
+/// kAmbiguous: the maps fit, but in several places that the data cannot tell apart.
+enum class Status { kAccepted, kRejected, kAmbiguous };
 const char* toString(Status status);
 
 struct VerdictOptions {
-  double min_uniqueness = 1.8;
-  double min_agreement = 0.55;
-  double min_overlap = 0.4;
+  double min_probability = 0.9;  ///< that the registration is within 5 cm RMS of the truth
+  double min_uniqueness = 1.5;   ///< least ratio of the peak to the next one, whatever else speaks
+  double rival = 0.8;            ///< placements of this share of the best significance are rivals
+  double min_fit = 8.0;          ///< significance from which on rivals are more than chance
+  double min_overlap = 0.25;
   double scale_margin = 0.05;
   double heading_margin_deg = 2.0;
 };
@@ -25,12 +30,19 @@ void describe(OptionTable& table, VerdictOptions& options);
 struct Verdict {
   Status status = Status::kRejected;
   std::vector<std::string> reasons;  ///< why, in plain words; never empty
+  double probability = 0.0;          ///< calibrated, that the result is within 5 cm RMS
 };
 
-/// Judges a pose in the levelled frames. `overlap` is the share of the moving map's cells that the
-/// fixed map sees.
-Verdict judge(const Evidence& evidence, double overlap, const Eigen::Affine2d& pose,
-              const SearchSpace& space, const VerdictOptions& options);
+/// What is judged.
+struct Finding {
+  Evidence evidence;
+  std::optional<PoseUncertainty> uncertainty;
+  double overlap = 0.0;  ///< share of the moving map's cells that the fixed map sees
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
+  std::vector<double> rivals;  ///< significances of the other distinct placements
+};
+
+Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options);
 
 /// The verdict on a pair for which a stage found no answer at all.
 Verdict rejectBecause(std::string reason);

@@ -15,6 +15,7 @@ enum class ExitCode : int {
   kBadInput = 3,
   kOutput = 4,
   kRejected = 10,
+  kAmbiguous = 11,
   kInterrupted = 130,
 };
 

@@ -27,6 +27,7 @@ void describe(OptionTable& table, RegistrationOptions& options) {
   table.group("cpd", options.cpd);
   table.group("vertical", options.vertical);
   table.group("evidence", options.evidence);
+  table.group("uncertainty", options.uncertainty);
   table.group("verdict", options.verdict);
 }
 

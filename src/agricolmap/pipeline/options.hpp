@@ -15,13 +15,15 @@
 #include "agricolmap/6_refine/dense_refine.hpp"
 #include "agricolmap/6_refine/vegetation.hpp"
 #include "agricolmap/6_refine/vertical.hpp"
+#include "agricolmap/7_verdict/uncertainty.hpp"
 #include "agricolmap/7_verdict/verdict.hpp"
 #include "agricolmap/core/options.hpp"
 
 namespace agricolmap {
 
 enum class AssociationKind { kCorrelation, kFlow };
-/// kDenseCpd: densely, then CPD where the vegetation can be told from the soil.
+/// kDenseCpd: densely, then the mean of that and CPD from there, where the vegetation can be told
+/// from the soil.
 enum class RefineKind { kDenseCpd, kDense, kCpd, kNone };
 
 struct RegistrationOptions {
@@ -40,6 +42,7 @@ struct RegistrationOptions {
   CpdOptions cpd;
   VerticalOptions vertical;
   EvidenceOptions evidence;
+  UncertaintyOptions uncertainty;
   VerdictOptions verdict;
 };
 void describe(OptionTable& table, RegistrationOptions& options);

@@ -11,11 +11,25 @@
 namespace agricolmap {
 namespace {
 
-// Cells of a level in grid cells: 12, 6, 4 and 2 cm with the default grid.
-constexpr std::array<int, 4> kFactors = {6, 3, 2, 1};
+// Cells of a level in grid cells. With the default grid: 12 and 6 cm, at which all placements are
+// refined over the whole maps and ranked at the second; 4 and 2 cm for the best.
+constexpr std::array<int, 2> kFactors = {6, 3};
 constexpr std::size_t kRankingLevel = 1;
+constexpr std::array<int, 2> kFinerFactors = {2, 1};
+/// At which blocks are compared for the uncertainty.
+constexpr int kUncertaintyFactor = 2;
 /// Finer cells must have at least this share of the coarser ones' overlap.
 constexpr double kLeastFinerOverlap = 0.5;
+/// The point refinement has its say when it moves no corner by more than this [m] and keeps this
+/// share of the correlation.
+constexpr double kMostDifference = 0.08;
+constexpr double kLeastCorrelation = 0.96;
+
+RefineOutcome failed(std::string why) {
+  RefineOutcome outcome;
+  outcome.failure = std::move(why);
+  return outcome;
+}
 
 }  // namespace
 
@@ -38,6 +52,44 @@ std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level,
   return RefinedPose{dense.fixed_from_moving, start.significance, dense.overlap};
 }
 
+PoseRefinement::Level PoseRefinement::levelUnder(const Eigen::Affine2d& pose, int factor) const {
+  const GridFrame& frame = moving_.frame;
+  Box2 window;
+  for (const double row : {-0.5, frame.rows - 0.5}) {
+    for (const double col : {-0.5, frame.cols - 0.5}) window.extend(pose * frame.centre(row, col));
+  }
+  // Room for the high-pass, and for what a level may move the pose by.
+  const double rim = 1.5 * options_.signal.high_pass + 8.0 * factor * frame.cell;
+  window.extend((window.min() - Eigen::Vector2d::Constant(rim)).eval());
+  window.extend((window.max() + Eigen::Vector2d::Constant(rim)).eval());
+  return {makeSignalMap(croppedMap(fixed_, window), factor, options_.signal),
+          makeSignalMap(moving_, factor, options_.signal)};
+}
+
+RefineOutcome PoseRefinement::rank(const std::vector<std::optional<RefinedPose>>& poses) const {
+  std::vector<RefinedPose> order;
+  for (const auto& pose : poses) {
+    if (pose) order.push_back(*pose);
+  }
+  std::stable_sort(order.begin(), order.end(), [](const RefinedPose& a, const RefinedPose& b) {
+    return a.significance > b.significance;
+  });
+  RefineOutcome outcome;
+  std::vector<RefinedPose> distinct;
+  for (const RefinedPose& pose : order) {
+    // Placements that ran to one and the same place are no rivals.
+    const bool is_new = std::none_of(
+        distinct.begin(), distinct.end(), [&](const RefinedPose& other) {
+          return meter_->distance(pose.pose, other.pose) <= options_.evidence.exclusion;
+        });
+    if (is_new) distinct.push_back(pose);
+  }
+  if (distinct.empty()) return outcome;
+  outcome.best = distinct.front();
+  outcome.rivals.assign(distinct.begin() + 1, distinct.end());
+  return outcome;
+}
+
 RefineOutcome PoseRefinement::refineDensely(
     std::vector<std::optional<RefinedPose>> poses,
     std::vector<std::pair<std::string, double>>& counts) const {
@@ -47,18 +99,17 @@ RefineOutcome PoseRefinement::refineDensely(
     }
     if (poses[i]) poses[i]->significance = meter_->significance(poses[i]->pose);
   });
-  RefineOutcome outcome;
-  double survivors = 0.0;
-  for (const auto& pose : poses) {
-    if (!pose) continue;
-    survivors += 1.0;
-    if (!outcome.best || pose->significance > outcome.best->significance) outcome.best = pose;
-  }
-  counts.emplace_back("refined_placements", survivors);
+  RefineOutcome outcome = rank(poses);
+  counts.emplace_back("refined_placements",
+                      static_cast<double>(std::count_if(poses.begin(), poses.end(), [](const auto& p) {
+                        return p.has_value();
+                      })));
   // What the finest cells cannot follow (a map with fewer points than cells has hardly two seen
   // side by side) stays as the coarser ones left it; whether it is right is for the verdict to say.
-  for (std::size_t level = kRankingLevel + 1; level < levels_.size() && outcome.best; ++level) {
-    const std::optional<RefinedPose> finer = refineAt(levels_[level], *outcome.best);
+  for (const int factor : kFinerFactors) {
+    if (!outcome.best) break;
+    const std::optional<RefinedPose> finer =
+        refineAt(levelUnder(outcome.best->pose, factor), *outcome.best);
     if (!finer || finer->overlap < kLeastFinerOverlap * outcome.best->overlap) break;
     outcome.best = finer;
   }
@@ -76,8 +127,8 @@ RefineOutcome PoseRefinement::refineByPoints(
   const Vegetation moving = extractVegetation(moving_, options_.vegetation);
   for (const auto& [map, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
     if (map->points.empty()) {
-      return {std::nullopt, fmt::format("vegetation cannot be told from soil in the {} map: {}",
-                                        name, describe(map->threshold.status))};
+      return failed(fmt::format("vegetation cannot be told from soil in the {} map: {}", name,
+                                describe(map->threshold.status)));
     }
   }
   // Heights start where the maps agree on the ground; the vertical stage has the last word.
@@ -92,16 +143,25 @@ RefineOutcome PoseRefinement::refineByPoints(
   counts.emplace_back("cpd_iterations", static_cast<double>(result.iterations));
   counts.emplace_back("cpd_matched_share", result.matched_share);
   if (!result.usable()) {
-    return {std::nullopt, fmt::format("the point refinement failed: {}", describe(result.status))};
+    return failed(fmt::format("the point refinement failed: {}", describe(result.status)));
   }
-  return {RefinedPose{result.pose.plane, meter_->significance(result.pose.plane), start.overlap},
-          ""};
+  RefineOutcome outcome;
+  outcome.best =
+      RefinedPose{result.pose.plane, meter_->significance(result.pose.plane), start.overlap};
+  return outcome;
+}
+
+bool PoseRefinement::agrees(const RefinedPose& points, const RefinedPose& dense) const {
+  // In canopy that closes, the points along its gaps lead astray: by an edge of the strip, or to
+  // where the maps correlate less.
+  return meter_->distance(points.pose, dense.pose) <= kMostDifference &&
+         fit(points.pose).correlation >= kLeastCorrelation * fit(dense.pose).correlation;
 }
 
 RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, StageTimes& times,
                                      std::vector<std::pair<std::string, double>>& counts) const {
   if (placements.empty()) {
-    return {std::nullopt, "the data association found nothing coherent within the prior's limits"};
+    return failed("the data association found nothing coherent within the prior's limits");
   }
   std::vector<std::optional<RefinedPose>> poses(placements.size());
   times.run("affine", [&] {
@@ -117,18 +177,37 @@ RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, S
       if (!dense.best || options_.refine == RefineKind::kDense) return dense;
       // Closed canopy or a map without colours has no vegetation points; the report says so.
       const RefineOutcome points = refineByPoints(*dense.best, counts);
-      counts.emplace_back("cpd_used", points.best ? 1.0 : 0.0);
-      return points.best ? points : dense;
+      const bool agree = points.best && agrees(*points.best, *dense.best);
+      counts.emplace_back("cpd_used", agree ? 1.0 : 0.0);
+      if (agree) {
+        // Their errors have little in common: outlines of plants here, leaves and soil there.
+        dense.best->pose.matrix() =
+            0.5 * (dense.best->pose.matrix() + points.best->pose.matrix()).eval();
+        dense.best->significance = meter_->significance(dense.best->pose);
+      }
+      return dense;
     }
-    if (!poses.front()) return {std::nullopt, "the coherent matches determine no affine"};
+    if (!poses.front()) return failed("the coherent matches determine no affine");
     if (options_.refine == RefineKind::kCpd) return refineByPoints(*poses.front(), counts);
     poses.front()->significance = meter_->significance(poses.front()->pose);
-    return {poses.front(), ""};
+    RefineOutcome outcome;
+    outcome.best = poses.front();
+    return outcome;
   });
 }
 
-Evidence PoseRefinement::evidence(const Eigen::Affine2d& pose) const {
-  return meter_->measure(pose, space_);
+Finding PoseRefinement::examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
+                                double height_residual) const {
+  Finding finding;
+  finding.pose = pose;
+  for (const RefinedPose& rival : outcome.rivals) finding.rivals.push_back(rival.significance);
+  const double highest = finding.rivals.empty() ? 0.0 : finding.rivals.front();
+  finding.evidence = meter_->measure(pose, space_, highest);
+  const Level level = levelUnder(pose, kUncertaintyFactor);
+  finding.uncertainty =
+      estimateUncertainty(level.fixed, level.moving, pose, finding.evidence, space_,
+                          height_residual, options_.uncertainty);
+  return finding;
 }
 
 Fit PoseRefinement::fit(const Eigen::Affine2d& pose) const {

@@ -22,6 +22,8 @@ struct RefinedPose {
 /// The winner, or why there is none.
 struct RefineOutcome {
   std::optional<RefinedPose> best;
+  /// Other places that held when refined to the ranking level, most significant first.
+  std::vector<RefinedPose> rivals;
   std::string failure;  ///< in plain words when there is no winner
 };
 
@@ -42,7 +44,10 @@ class PoseRefinement {
   /// paper, the placement with most votes by CPD on the vegetation points; or not at all.
   RefineOutcome choose(const std::vector<Placement>& placements, StageTimes& times,
                        std::vector<std::pair<std::string, double>>& counts) const;
-  Evidence evidence(const Eigen::Affine2d& pose) const;
+  /// What the verdict rests on, for the refined `pose` of an outcome. `height_residual`: robust
+  /// deviation of the ground's heights [m].
+  Finding examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
+                  double height_residual) const;
   /// At the ranking level: finer maps may be sparser than their cells.
   Fit fit(const Eigen::Affine2d& pose) const;
 
@@ -51,9 +56,15 @@ class PoseRefinement {
     SignalMap fixed;
     SignalMap moving;
   };
+  /// Both maps at `factor` grid cells, the fixed one only where the pose puts the moving one.
+  Level levelUnder(const Eigen::Affine2d& pose, int factor) const;
   std::optional<RefinedPose> refineAt(const Level& level, const RefinedPose& start) const;
+  /// The best of the poses and its rivals, at the ranking level.
+  RefineOutcome rank(const std::vector<std::optional<RefinedPose>>& poses) const;
   RefineOutcome refineDensely(std::vector<std::optional<RefinedPose>> poses,
                               std::vector<std::pair<std::string, double>>& counts) const;
+  /// Whether the point refinement's answer can stand beside the dense one's.
+  bool agrees(const RefinedPose& points, const RefinedPose& dense) const;
   RefineOutcome refineByPoints(const RefinedPose& start,
                                std::vector<std::pair<std::string, double>>& counts) const;
 
@@ -61,7 +72,7 @@ class PoseRefinement {
   const GridMap& moving_;
   const SearchSpace& space_;
   const RegistrationOptions& options_;
-  std::vector<Level> levels_;             ///< coarse to fine: 12, 6, 4, 2 cm for cells of 2 cm
+  std::vector<Level> levels_;             ///< of the whole maps, coarse to fine: 12, 6 cm
   std::unique_ptr<EvidenceMeter> meter_;  ///< at the ranking level, the second
 };
 

@@ -10,24 +10,10 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/pipeline/refinement.hpp"
+#include "agricolmap/pipeline/unknown_scale.hpp"
 
 namespace agricolmap {
 namespace {
-
-// Beyond this ratio of areas "moving" and "fixed" were swapped, or one is in other units.
-constexpr double kMaxAreaRatio = 4.0;
-
-/// What a search that did not convince is followed by. Finer cells are dearer, and needed where the
-/// canopy is closed and only leaves tell places apart; then all headings and scales, should the
-/// rows have misled.
-struct Attempt {
-  double cell;  ///< of the options' cell
-  int climbs;   ///< times the options' climbs
-  bool rows_on_rows;
-};
-constexpr std::array<Attempt, 3> kAttempts = {
-    {{1.0, 1, true}, {2.0 / 3.0, 3, true}, {1.0, 2, false}}};
 
 void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options) {
   if (options.geometry_only) return;
@@ -41,128 +27,6 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
   }
 }
 
-struct PointSum {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  PointSum& operator+=(const PointSum& other) {
-    sum += other.sum;
-    return *this;
-  }
-};
-
-/// Mean of the cloud's points in its file's coordinates.
-Eigen::Vector3d meanOf(const Cloud& cloud) {
-  if (cloud.xyz.empty()) return cloud.origin;
-  const PointSum total =
-      parallelSum<PointSum>(cloud.size(), 1U << 16, {}, [&](std::size_t begin, std::size_t end) {
-        PointSum part;
-        for (std::size_t i = begin; i < end; ++i) part.sum += cloud.xyz[i].cast<double>();
-        return part;
-      });
-  return cloud.origin + total.sum / static_cast<double>(cloud.size());
-}
-
-/// Where the guess says nothing about the place, the middles of the clouds are laid together, so
-/// that all that follows counts from there, however far apart the files' coordinates are.
-Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                             const PriorUncertainty& uncertainty) {
-  if (!uncertainty.anywhere()) return guess;
-  return Eigen::Translation3d(meanOf(fixed) - guess * meanOf(moving)) * guess;
-}
-
-PairFrames levelPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                     const LevelOptions& options) {
-  // In double and about the origins, so that UTM coordinates cancel before anything is float.
-  const Eigen::Affine3d guess_local =
-      Eigen::Translation3d(-fixed.origin) * guess * Eigen::Translation3d(moving.origin);
-  PairFrames frames;
-  frames.fixed = levelCloud(fixed, Eigen::Affine3d::Identity(), options);
-  frames.moving = levelCloud(moving, guess_local, options);
-  frames.levelled_from_fixed = frames.fixed.levelled_from_guess;
-  frames.levelled_from_moving = frames.moving.levelled_from_guess * guess_local;
-  return frames;
-}
-
-struct Box2Sum {
-  Box2 box;
-  Box2Sum& operator+=(const Box2Sum& other) {
-    box.extend(other.box);
-    return *this;
-  }
-};
-
-/// Horizontal bounds of the cloud in the levelled frame.
-Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
-  return parallelSum<Box2Sum>(
-             cloud.size(), 1U << 16, {},
-             [&](std::size_t begin, std::size_t end) {
-               Box2Sum part;
-               for (std::size_t i = begin; i < end; ++i) {
-                 part.box.extend(
-                     (levelled_from_local * cloud.xyz[i].cast<double>()).head<2>().eval());
-               }
-               return part;
-             })
-      .box;
-}
-
-/// The part of the fixed frame that the moving map can reach, with a rim for the high-pass.
-Box2 reachableWindow(const Box2& moving, const SearchSpace& space, double rim) {
-  const double heading = space.uncertainty.heading_deg * std::numbers::pi / 180.0;
-  const double stretch = std::exp(logScaleLimit(space.uncertainty));
-  Box2 window;
-  for (const double yaw : {-heading, 0.0, heading}) {
-    for (int corner = 0; corner < 4; ++corner) {
-      const Eigen::Vector2d arm =
-          moving.corner(static_cast<Box2::CornerType>(corner)) - space.centre;
-      window.extend((space.centre + stretch * (rotation2(yaw) * arm)).eval());
-    }
-  }
-  const double margin = space.uncertainty.translation + rim;
-  window.extend((window.min() - Eigen::Vector2d::Constant(margin)).eval());
-  window.extend((window.max() + Eigen::Vector2d::Constant(margin)).eval());
-  return window;
-}
-
-SearchSpace searchSpace(const Box2& moving, const PairFrames& frames,
-                        const PriorUncertainty& uncertainty) {
-  SearchSpace space;
-  space.uncertainty = uncertainty;
-  space.centre = moving.center();
-  const Eigen::Matrix2d axes = frames.levelled_from_moving.linear().topLeftCorner<2, 2>();
-  space.scale_axes = axes.colwise().normalized();
-  return space;
-}
-
-void gridPair(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
-              Registration& result) {
-  const Box2 moving_box = boundsOf(moving, result.frames.levelled_from_moving);
-  const Box2 fixed_box = boundsOf(fixed, result.frames.levelled_from_fixed);
-  if (moving_box.volume() > kMaxAreaRatio * fixed_box.volume()) {
-    throw InputError(fmt::format(
-        "{}: covers {:.3g} x {:.3g} m, far more than the fixed map {} with {:.3g} x {:.3g} m; are "
-        "FIXED and MOVING swapped, or their units different?",
-        moving.name, moving_box.sizes().x(), moving_box.sizes().y(), fixed.name,
-        fixed_box.sizes().x(), fixed_box.sizes().y()));
-  }
-  result.space = searchSpace(moving_box, result.frames, options.prior);
-  const Box2 window = reachableWindow(moving_box, result.space, 2.0 * options.signal.high_pass);
-  result.fixed_map = makeGridMap(fixed, result.frames.levelled_from_fixed,
-                                 window.intersection(fixed_box), options.grid);
-  result.moving_map =
-      makeGridMap(moving, result.frames.levelled_from_moving, moving_box, options.grid);
-  result.counts = {{"fixed_cells", static_cast<double>(result.fixed_map.filled)},
-                   {"moving_cells", static_cast<double>(result.moving_map.filled)}};
-}
-
-std::unique_ptr<Association> makeAssociation(const RegistrationOptions& options) {
-  if (options.association == AssociationKind::kFlow) {
-    return std::make_unique<FlowAssociation>(options.flow);
-  }
-  CorrelationOptions search = options.search;
-  search.signal = options.signal;
-  return std::make_unique<CorrelationSearch>(search);
-}
-
 /// moving levelled → fixed levelled, with the vertical part.
 Eigen::Affine3d lift(const Eigen::Affine2d& pose, const VerticalResult& vertical) {
   Eigen::Affine3d lifted = Eigen::Affine3d::Identity();
@@ -174,13 +38,24 @@ Eigen::Affine3d lift(const Eigen::Affine2d& pose, const VerticalResult& vertical
   return lifted;
 }
 
-/// Fills the transforms and their parts from the pose in the levelled frames.
-void compose(const Cloud& fixed, const Cloud& moving, Registration& result) {
+/// Fills the transforms and their parts from the poses in the levelled frames.
+void compose(const Cloud& fixed, const Cloud& moving, const VerticalOptions& options,
+             Registration& result) {
+  const auto localOf = [&](const Eigen::Affine3d& levelled) -> Eigen::Affine3d {
+    return result.frames.levelled_from_fixed.inverse() * levelled *
+           result.frames.levelled_from_moving;
+  };
+  const auto inFiles = [&](const Eigen::Affine3d& local) -> Eigen::Affine3d {
+    return Eigen::Translation3d(fixed.origin) * local * Eigen::Translation3d(-moving.origin);
+  };
+  for (Alternative& other : result.alternatives) {
+    const VerticalResult vertical =
+        fitVertical(result.fixed_map, result.moving_map, other.pose, options);
+    other.fixed_from_moving = inFiles(localOf(lift(other.pose, vertical)));
+  }
   const Eigen::Affine3d levelled = lift(result.pose, result.vertical);
-  result.local_fixed_from_moving =
-      result.frames.levelled_from_fixed.inverse() * levelled * result.frames.levelled_from_moving;
-  result.fixed_from_moving = Eigen::Translation3d(fixed.origin) * result.local_fixed_from_moving *
-                             Eigen::Translation3d(-moving.origin);
+  result.local_fixed_from_moving = localOf(levelled);
+  result.fixed_from_moving = inFiles(result.local_fixed_from_moving);
   const Eigen::Matrix2d& axes = result.space.scale_axes;
   result.parts = splitHorizontal(axes.transpose() * result.pose.linear() * axes);
   result.tilt = result.vertical.slope.array().atan().matrix();
@@ -190,46 +65,157 @@ void compose(const Cloud& fixed, const Cloud& moving, Registration& result) {
   result.has_transform = true;
 }
 
-double count(const std::vector<std::pair<std::string, double>>& counts, std::string_view name) {
-  for (const auto& [key, value] : counts) {
-    if (key == name) return value;
-  }
-  return 0.0;
-}
+/// A registration in the making.
+class Registrar {
+ public:
+  Registrar(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
+            StageTimes& times)
+      : fixed_(fixed), moving_(moving), options_(options), times_(times) {}
 
-/// Stages 3 to 8 on gridded maps.
-void place(const PoseRefinement& refinement, const Association& association,
-           const RegistrationOptions& options, StageTimes& times, Registration& result) {
-  // 3.–5. Data association: descriptors, flow and vote (Sec. III-B), or the correlation search.
-  result.association =
-      association.associate(result.fixed_map, result.moving_map, result.space, times);
-  result.counts.insert(result.counts.end(), result.association.counts.begin(),
-                       result.association.counts.end());
-  // 6. Affine with two scales per placement (Eq. 3); 7. refinement of the best.
-  const RefineOutcome refined =
-      refinement.choose(result.association.placements, times, result.counts);
-  result.has_transform = refined.best.has_value();
-  if (!refined.best) {
-    result.verdict = rejectBecause(refined.failure);
-    return;
+  Registration run(const Eigen::Affine3d& guess) {
+    prepare(guess);
+    PairOutcome& outcome = result_;
+    outcome = placer().search();
+    return finish();
   }
-  result.pose = refined.best->pose;
-  const Fit fit = refinement.fit(result.pose);
-  result.overlap = fit.overlap;
-  result.correlation = fit.correlation;
-  result.vertical = times.run("vertical", [&] {
-    return fitVertical(result.fixed_map, result.moving_map, result.pose, options.vertical);
-  });
-  // 8. Verdict.
-  times.run("verdict", [&] {
-    result.evidence = refinement.evidence(result.pose);
-    result.verdict =
-        judge(result.evidence, result.overlap, result.pose, result.space, options.verdict);
-  });
-  if (result.vertical.status != VerticalStatus::kOk) {
-    result.verdict = rejectBecause("the heights of the two maps do not fit one another");
+
+  /// Tries the factors that the moving file may be off by, and registers anew from what the best
+  /// of them found: with heights at the right scale, and cells of the right size.
+  Registration runAtUnknownScale(const Eigen::Affine3d& guess) {
+    prepare(guess);
+    const std::vector<double> factors =
+        scaleFactors(moving_box_, fixed_box_, options_.prior);
+    std::optional<Found> best;
+    for (const double factor : factors) {
+      const Eigen::Affine3d scaled = scaledGuess(guess, factor);
+      prepareMoving(scaled);
+      std::optional<PairOutcome> next = placer().searchOnce(0, nullptr);
+      if (!next || (best && !better(*next, best->outcome))) continue;
+      best = Found{factor, scaled, result_.frames, *std::move(next)};
+      if (best->outcome.verdict.status == Status::kAccepted) break;
+    }
+    if (!best) {
+      throw InputError(fmt::format(
+          "{}: at no scale between 0.1 and 10 does it fit into the fixed map {} and still hold "
+          "more than a few plants",
+          moving_.name, fixed_.name));
+    }
+    result_.counts = best->outcome.counts;
+    if (best->outcome.has_transform) settleAt(*best, guess);
+    else static_cast<PairOutcome&>(result_) = std::move(best->outcome);
+    return finish();
   }
-}
+
+ private:
+  /// What one factor of an unknown scale led to.
+  struct Found {
+    double factor;
+    Eigen::Affine3d guess;
+    PairFrames frames;
+    PairOutcome outcome;
+  };
+
+  /// 1. Level (assumption 5: only the moving map's scale is in question). 2. Multimodal grid maps
+  /// (Sec. III-A).
+  void prepare(const Eigen::Affine3d& guess) {
+    const Eigen::Affine3d centred = centredGuess(fixed_, moving_, guess, options_.prior);
+    times_.run("level", [&] { levelFixed(fixed_, options_.level, result_.frames); });
+    fixed_box_ = boundsOf(fixed_, result_.frames.levelled_from_fixed);
+    levelAndBound(centred);
+    if (!options_.prior.scale_unknown) {
+      requirePlausibleExtents(fixed_, moving_, fixed_box_, moving_box_);
+    }
+    times_.run("grid", [&] {
+      // Room for the high-pass.
+      const Box2 window =
+          options_.prior.scale_unknown
+              ? fixed_box_
+              : reachableWindow(moving_box_, result_.space, 2.0 * options_.signal.high_pass);
+      result_.fixed_map = makeGridMap(fixed_, result_.frames.levelled_from_fixed,
+                                      window.intersection(fixed_box_), options_.grid);
+      if (!options_.prior.scale_unknown) gridMoving();
+    });
+  }
+
+  void levelAndBound(const Eigen::Affine3d& guess) {
+    times_.run("level", [&] {
+      levelMoving(fixed_, moving_, guess, options_.level, result_.frames);
+      moving_box_ = boundsOf(moving_, result_.frames.levelled_from_moving);
+    });
+    result_.space = searchSpace(moving_box_, result_.frames, options_.prior);
+  }
+
+  void gridMoving() {
+    result_.moving_map =
+        makeGridMap(moving_, result_.frames.levelled_from_moving, moving_box_, options_.grid);
+  }
+
+  void prepareMoving(const Eigen::Affine3d& guess) {
+    levelAndBound(guess);
+    times_.run("grid", [&] { gridMoving(); });
+  }
+
+  PairPlacer placer() {
+    return {result_.fixed_map, result_.moving_map, result_.space, options_, times_};
+  }
+
+  /// The guess with the moving cloud made larger about its middle.
+  Eigen::Affine3d scaledGuess(const Eigen::Affine3d& guess, double factor) const {
+    const Eigen::Affine3d centred = centredGuess(fixed_, moving_, guess, options_.prior);
+    const Eigen::Vector3d middle = meanOf(moving_);
+    return centred * Eigen::Translation3d(middle) * Eigen::UniformScaling<double>(factor) *
+           Eigen::Translation3d(-middle);
+  }
+
+  void settleAt(const Found& found, const Eigen::Affine3d& guess) {
+    const Eigen::Matrix2d& axes = result_.space.scale_axes;
+    const HorizontalParts parts =
+        splitHorizontal(axes.transpose() * found.outcome.pose.linear() * axes);
+    scale_ = found.factor * std::sqrt(parts.scale_x * parts.scale_y);
+    const Eigen::Affine3d scaled = scaledGuess(guess, scale_);
+    prepareMoving(scaled);
+    // Levelled moving of now → levelled moving of then, in the plane.
+    const Eigen::Affine3d then_from_now = found.frames.levelled_from_moving *
+                                          result_.frames.levelled_from_moving.inverse();
+    Eigen::Affine2d plane = Eigen::Affine2d::Identity();
+    plane.linear() = then_from_now.linear().topLeftCorner<2, 2>();
+    plane.translation() = then_from_now.translation().head<2>();
+    Placement placement;
+    placement.score = found.outcome.evidence.significance;
+    for (const double u : {0.0, 0.5, 1.0}) {
+      for (const double v : {0.0, 0.5, 1.0}) {
+        const Eigen::Vector2d point =
+            moving_box_.min() + moving_box_.sizes().cwiseProduct(Eigen::Vector2d(u, v));
+        placement.matches.push_back({point, found.outcome.pose * plane * point});
+      }
+    }
+    std::vector<RefinedPose> rivals = found.outcome.rivals;
+    for (RefinedPose& rival : rivals) rival.pose = rival.pose * plane;
+    const std::vector<std::pair<std::string, double>> counts = result_.counts;
+    PairOutcome& outcome = result_;
+    outcome = placer().settle(placement, std::move(rivals));
+    outcome.counts.insert(outcome.counts.begin(), counts.begin(), counts.end());
+  }
+
+  Registration finish() {
+    if (result_.has_transform) {
+      compose(fixed_, moving_, options_.vertical, result_);
+      result_.parts.scale_x *= scale_;
+      result_.parts.scale_y *= scale_;
+      result_.vertical_scale *= scale_;
+    }
+    return std::move(result_);
+  }
+
+  const Cloud& fixed_;
+  const Cloud& moving_;
+  const RegistrationOptions& options_;
+  StageTimes& times_;
+  Registration result_;
+  Box2 fixed_box_;
+  Box2 moving_box_;
+  double scale_ = 1.0;  ///< that the moving file was enlarged by
+};
 
 }  // namespace
 
@@ -238,42 +224,18 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   checkOptions(chosen);
   RegistrationOptions options = chosen;
   requireColours(fixed, moving, options);
-  if (options.prior.anywhere() && options.association == AssociationKind::kFlow) {
+  if ((options.prior.anywhere() || options.prior.scale_unknown) &&
+      options.association == AssociationKind::kFlow) {
     throw UsageError(
-        "the flow needs to know about where to look: give --prior-sigma with a translation, or use "
-        "--association correlation");
+        "the flow needs to know about where to look and at what scale: give --prior-sigma with a "
+        "translation and no --scale-unknown, or use --association correlation");
   }
   if (options.geometry_only) {
     options.signal.term = DataTerm::kHeight;
     options.flow.describe.term = DataTerm::kHeight;
   }
-  Registration result;
-  // 1. Level (assumption 5: only the moving map's scale is in question).
-  result.frames = times.run("level", [&] {
-    return levelPair(fixed, moving, centredGuess(fixed, moving, guess, options.prior),
-                     options.level);
-  });
-  // 2. Multimodal grid maps (Sec. III-A).
-  times.run("grid", [&] { gridPair(fixed, moving, options, result); });
-  const PoseRefinement refinement(result.fixed_map, result.moving_map, result.space, options);
-  const std::vector<std::pair<std::string, double>> grid_counts = result.counts;
-  int tried = 0;
-  for (const Attempt& attempt : kAttempts) {
-    const bool rows = options.search.rows_on_rows && attempt.rows_on_rows;
-    // Nothing new when the rows did not restrict the search before.
-    if (tried > 0 && !attempt.rows_on_rows && count(result.counts, "rows_on_rows") < 1.0) break;
-    RegistrationOptions now = options;
-    now.search.cell *= attempt.cell;
-    now.search.climbs *= attempt.climbs;
-    now.search.rows_on_rows = rows;
-    result.counts = grid_counts;
-    result.counts.emplace_back("attempts", ++tried);
-    place(refinement, *makeAssociation(now), now, times, result);
-    if (result.verdict.status == Status::kAccepted) break;
-    if (options.association != AssociationKind::kCorrelation) break;
-  }
-  if (result.has_transform) compose(fixed, moving, result);
-  return result;
+  Registrar registrar(fixed, moving, options, times);
+  return options.prior.scale_unknown ? registrar.runAtUnknownScale(guess) : registrar.run(guess);
 }
 
 }  // namespace agricolmap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,22 +11,14 @@
 #include "agricolmap/core/stopwatch.hpp"
 #include "agricolmap/core/transform.hpp"
 #include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/pipeline/pair_maps.hpp"
+#include "agricolmap/pipeline/placing.hpp"
 
 namespace agricolmap {
 
-/// Frames of a pair. Local frames are the clouds' own axes about their double origins.
-struct PairFrames {
-  Eigen::Affine3d levelled_from_fixed;   ///< fixed local → fixed levelled [m]
-  Eigen::Affine3d levelled_from_moving;  ///< moving local → initial guess → moving levelled [m]
-  Levelling fixed;
-  Levelling moving;
-};
-
 /// What a registration found. `status == kRejected` with `has_transform == false`: no answer at
 /// all.
-struct Registration {
-  Verdict verdict;
-  bool has_transform = false;
+struct Registration : PairOutcome {
   /// Moving file coordinates → fixed file coordinates [m].
   Eigen::Affine3d fixed_from_moving;
   /// The same between the local frames (about the clouds' origins).
@@ -39,19 +32,11 @@ struct Registration {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();   ///< of the moving map's middle [m]
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< that middle, fixed file coordinates [m]
 
-  Evidence evidence;
-  double overlap = 0.0;      ///< share of the moving map's cells that the fixed map sees
-  double correlation = 0.0;  ///< of the dense signals at the end
-  VerticalResult vertical;
-  std::vector<std::pair<std::string, double>> counts;  ///< per stage, in order
-
   // Kept for pictures and reports.
   PairFrames frames;
   GridMap fixed_map;
   GridMap moving_map;
   SearchSpace space;
-  AssociationResult association;
-  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
 };
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.

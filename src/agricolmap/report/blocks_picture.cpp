@@ -97,8 +97,21 @@ std::vector<std::pair<std::string, std::string>> figures(const Registration& res
   return {{"blocks that agree", fmt::format("{} of {}", evidence.agreeing, evidence.blocks.size())},
           {"uniqueness (peak / next peak)", fmt::format("{:.2f}", evidence.uniqueness)},
           {"significance (peak / deviation)", fmt::format("{:.1f}", evidence.significance)},
+          {"probability of being right", fmt::format("{:.1f} %", 100.0 * result.verdict.probability)},
           {"overlap", fmt::format("{:.0f} %", 100.0 * result.overlap)},
           {"correlation", fmt::format("{:.2f}", result.correlation)}};
+}
+
+const char* headline(Status status) {
+  switch (status) {
+    case Status::kAccepted:
+      return "Accepted, because";
+    case Status::kAmbiguous:
+      return "Ambiguous, because";
+    case Status::kRejected:
+      break;
+  }
+  return "Rejected, because";
 }
 
 void drawText(PictureCanvas& canvas, const Scene& scene, int top) {
@@ -112,7 +125,7 @@ void drawText(PictureCanvas& canvas, const Scene& scene, int top) {
   const bool accepted = result.verdict.status == Status::kAccepted;
   const double left = kMargin + 400.0;
   y = top + 14.0;
-  canvas.text({left, y}, accepted ? "Accepted, because" : "Rejected, because",
+  canvas.text({left, y}, headline(result.verdict.status),
               {14.0, accepted ? palette::kGood : palette::kBad, true, Align::kLeft});
   for (const std::string& reason : result.verdict.reasons) {
     y += kLine;
@@ -142,7 +155,7 @@ void writeBlocksPicture(const OutputPath& path, const Scene& scene) {
   paintStrip(canvas, scene, view);
   {
     const PictureCanvas::Clip clip(canvas, view.rect);
-    const Eigen::Vector2d size = blockSize(scene.block_strip, scene.info.evidence.block);
+    const Eigen::Vector2d size = blockSize(scene.block_strip, result.evidence.block_side);
     for (const BlockEvidence& block : result.evidence.blocks) {
       drawBlock(canvas, scene, view, block, size);
     }

@@ -18,7 +18,7 @@ std::vector<std::string> bannerLines(const Verdict& verdict) {
   if (verdict.status == Status::kAccepted) return {};
   PictureCanvas scratch(1, 1, {});
   std::vector<std::string> lines = scratch.wrapped(
-      fmt::format("{}", fmt::join(verdict.reasons, "; ")), kInnerWidth - 150.0, kBannerText);
+      fmt::format("{}", fmt::join(verdict.reasons, "; ")), kInnerWidth - 165.0, kBannerText);
   if (lines.size() > kMaxBannerLines) {
     lines.resize(kMaxBannerLines);
     lines.back() += " …";
@@ -63,9 +63,9 @@ Page::Page(int content_height, const std::string& title, const std::string& subt
   if (lines.empty()) return;
   canvas.fill({0, kHeader, kPageWidth, bannerHeight(lines.size()) - kGap}, palette::kBad);
   double y = kHeader + 20.0;
-  canvas.text({kMargin, y}, "REJECTED", {17.0, hexColour(0xffffff), true, Align::kLeft});
+  canvas.text({kMargin, y}, verdict.status == Status::kAmbiguous ? "AMBIGUOUS" : "REJECTED", {17.0, hexColour(0xffffff), true, Align::kLeft});
   for (const std::string& line : lines) {
-    canvas.text({kMargin + 130.0, y}, line, kBannerText);
+    canvas.text({kMargin + 145.0, y}, line, kBannerText);
     y += kBannerLine;
   }
   top += bannerHeight(lines.size());

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -151,6 +152,43 @@ Json evidenceJson(const Evidence& evidence) {
   return json;
 }
 
+/// Of (shift_x, shift_y, shift_z [m], yaw [rad], scale_x, scale_y [relative]).
+Json uncertaintyJson(const Cloud& fixed, const Registration& registration) {
+  if (!registration.has_transform || !registration.uncertainty) return nullptr;
+  const PoseUncertainty& uncertainty = *registration.uncertainty;
+  constexpr std::array<int, 5> kPlace = {0, 1, 3, 4, 5};
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) covariance(kPlace[i], kPlace[j]) = uncertainty.covariance(i, j);
+  }
+  covariance(2, 2) = uncertainty.height_deviation * uncertainty.height_deviation;
+  // The levelled frame is turned into the file's by a tilt alone.
+  const Eigen::Affine3d file_from_levelled = registration.frames.levelled_from_fixed.inverse();
+  const Eigen::Vector3d centre =
+      file_from_levelled *
+      Eigen::Vector3d(uncertainty.centre.x(), uncertainty.centre.y(), registration.vertical.offset);
+  Json json;
+  json["parameters"] = {"shift_x_m", "shift_y_m", "shift_z_m", "yaw_rad", "scale_x", "scale_y"};
+  json["covariance"] = matrixJson(covariance);
+  json["deviations"] = vectorJson(covariance.diagonal().cwiseSqrt());
+  json["centre_m"] = vectorJson((fixed.origin + centre).eval());
+  json["axis_x"] = vectorJson(uncertainty.axes.col(0));
+  json["axis_y"] = vectorJson(uncertainty.axes.col(1));
+  json["expected_rms_m"] = number(uncertainty.expected_rms);
+  json["local_rms_m"] = number(uncertainty.local_rms);
+  return json;
+}
+
+Json alternativesJson(const Registration& registration) {
+  Json json = Json::array();
+  for (const Alternative& other : registration.alternatives) {
+    json.push_back({{"matrix", matrixJson(other.fixed_from_moving.matrix())},
+                    {"significance", number(other.significance)},
+                    {"relative", number(other.significance / registration.evidence.significance)}});
+  }
+  return json;
+}
+
 Json numbersJson(const std::vector<std::pair<std::string, double>>& numbers,
                  const std::string& suffix) {
   Json json = Json::object();
@@ -183,7 +221,10 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
+  json["probability"] = number(registration.verdict.probability);
   json["transform"] = transformJson(fixed, moving, registration);
+  json["uncertainty"] = uncertaintyJson(fixed, registration);
+  json["alternatives"] = alternativesJson(registration);
   json["prior"] = {{"matrix", matrixJson(info.prior.matrix())},
                    {"source", validUtf8(info.prior_source)}};
   json["residuals"] = residualsJson(registration);

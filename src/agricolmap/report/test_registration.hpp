@@ -73,6 +73,7 @@ inline void addEvidence(Registration& result, const TestStrip& strip,
     if (block.agrees) ++result.evidence.agreeing;
     result.evidence.blocks.push_back(block);
   }
+  result.evidence.block_side = 1.2;
   result.evidence.significance = 21.5;
   result.evidence.uniqueness = 2.4;
 }
@@ -118,7 +119,8 @@ inline Registration testRegistration(const TestStrip& strip = {}) {
   addEvidence(result, strip, centre);
   result.verdict = {Status::kAccepted,
                     {"the peak is 2.40 times the highest other one",
-                     "4 of 5 blocks, placed alone, agree with the whole"}};
+                     "4 of 5 blocks, placed alone, agree with the whole"},
+                    0.98};
   return result;
 }
 

@@ -16,23 +16,9 @@ constexpr double kBandsPerOctave = 4.0;
 
 /// The middle of a map.
 GridMap middleOf(const GridMap& map) {
-  GridMap part;
-  part.frame = map.frame;
-  part.frame.rows = std::min(map.frame.rows, kMostCells);
-  part.frame.cols = std::min(map.frame.cols, kMostCells);
-  const int row0 = (map.frame.rows - part.frame.rows) / 2;
-  const int col0 = (map.frame.cols - part.frame.cols) / 2;
-  const auto cut = [&]<typename T>(const Raster<T>& from, Raster<T>& to) {
-    to = Raster<T>(part.frame.rows, part.frame.cols);
-    for (int r = 0; r < part.frame.rows; ++r) {
-      std::copy_n(from.row(row0 + r) + col0, part.frame.cols, to.row(r));
-    }
-  };
-  cut(map.weight, part.weight);
-  cut(map.height, part.height);
-  cut(map.exg, part.exg);
-  cut(map.colour, part.colour);
-  return part;
+  const Eigen::Vector2d middle = map.frame.centre(0.5 * map.frame.rows, 0.5 * map.frame.cols);
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5 * kMostCells * map.frame.cell);
+  return croppedMap(map, Box2(middle - half, middle + half));
 }
 
 /// Power of the map, tapered so that its edges make no waves.

@@ -1,0 +1,49 @@
+// Stages 1 and 2: from two clouds and an initial guess to levelled, gridded maps.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "agricolmap/1_level/level.hpp"
+#include "agricolmap/2_grid/grid_map.hpp"
+#include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/core/cloud.hpp"
+
+namespace agricolmap {
+
+/// Frames of a pair. Local frames are the clouds' own axes about their double origins.
+struct PairFrames {
+  Eigen::Affine3d levelled_from_fixed;   ///< fixed local → fixed levelled [m]
+  Eigen::Affine3d levelled_from_moving;  ///< moving local → initial guess → moving levelled [m]
+  Levelling fixed;
+  Levelling moving;
+};
+
+/// Mean of the cloud's points in its file's coordinates [m].
+Eigen::Vector3d meanOf(const Cloud& cloud);
+
+/// Where the guess says nothing about the place, the middles of the clouds are laid together, so
+/// that all that follows counts from there, however far apart the files' coordinates are.
+Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                             const PriorUncertainty& uncertainty);
+
+/// Levels the fixed cloud.
+void levelFixed(const Cloud& fixed, const LevelOptions& options, PairFrames& frames);
+/// Levels the moving cloud under a guess (moving file → fixed file coordinates).
+void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                 const LevelOptions& options, PairFrames& frames);
+
+/// Horizontal bounds of the cloud in the levelled frame.
+Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
+
+/// Throws InputError when the moving map's bounds are far larger than the fixed map's.
+void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const Box2& fixed_box,
+                             const Box2& moving_box);
+
+/// What is searched when the moving map has these bounds.
+SearchSpace searchSpace(const Box2& moving, const PairFrames& frames,
+                        const PriorUncertainty& uncertainty);
+
+/// The part of the fixed frame that a moving map of these bounds can reach, and `rim` more [m].
+Box2 reachableWindow(const Box2& moving, const SearchSpace& space, double rim);
+
+}  // namespace agricolmap

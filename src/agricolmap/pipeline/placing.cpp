@@ -1,0 +1,142 @@
+#include "agricolmap/pipeline/placing.hpp"
+
+#include <array>
+#include <memory>
+#include <string_view>
+
+namespace agricolmap {
+namespace {
+
+/// What a search that did not convince is followed by. Finer cells are dearer, and needed where the
+/// canopy is closed and only leaves tell places apart; then all headings and scales, should the
+/// rows have misled.
+struct Attempt {
+  double cell;  ///< of the options' cell
+  int climbs;   ///< times the options' climbs
+  bool rows_on_rows;
+};
+constexpr std::array<Attempt, 3> kAttempts = {
+    {{1.0, 1, true}, {2.0 / 3.0, 3, true}, {1.0, 2, false}}};
+
+std::unique_ptr<Association> makeAssociation(const RegistrationOptions& options) {
+  if (options.association == AssociationKind::kFlow) {
+    return std::make_unique<FlowAssociation>(options.flow);
+  }
+  CorrelationOptions search = options.search;
+  search.signal = options.signal;
+  return std::make_unique<CorrelationSearch>(search);
+}
+
+double count(const std::vector<std::pair<std::string, double>>& counts, std::string_view name) {
+  for (const auto& [key, value] : counts) {
+    if (key == name) return value;
+  }
+  return 0.0;
+}
+
+int rankOf(Status status) {
+  return status == Status::kAccepted ? 2 : status == Status::kAmbiguous ? 1 : 0;
+}
+
+}  // namespace
+
+bool better(const PairOutcome& a, const PairOutcome& b) {
+  if (a.has_transform != b.has_transform) return a.has_transform;
+  if (rankOf(a.verdict.status) != rankOf(b.verdict.status)) {
+    return rankOf(a.verdict.status) > rankOf(b.verdict.status);
+  }
+  if (a.verdict.probability != b.verdict.probability) {
+    return a.verdict.probability > b.verdict.probability;
+  }
+  return a.evidence.significance > b.evidence.significance;
+}
+
+std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
+                                                  const PairOutcome* before) const {
+  if (index >= kAttempts.size()) return std::nullopt;
+  const Attempt& attempt = kAttempts[index];
+  if (index > 0 && options_.association != AssociationKind::kCorrelation) return std::nullopt;
+  // Nothing new when the rows did not restrict the search before.
+  if (before != nullptr && !attempt.rows_on_rows && count(before->counts, "rows_on_rows") < 1.0) {
+    return std::nullopt;
+  }
+  RegistrationOptions now = options_;
+  now.search.cell *= attempt.cell;
+  now.search.climbs *= attempt.climbs;
+  now.search.rows_on_rows = options_.search.rows_on_rows && attempt.rows_on_rows;
+  PairOutcome outcome;
+  outcome.counts = {{"fixed_cells", static_cast<double>(fixed_.filled)},
+                    {"moving_cells", static_cast<double>(moving_.filled)},
+                    {"attempts", static_cast<double>(index + 1)}};
+  // 3.–5. Data association: descriptors, flow and vote (Sec. III-B), or the correlation search.
+  outcome.association = makeAssociation(now)->associate(fixed_, moving_, space_, times_);
+  outcome.counts.insert(outcome.counts.end(), outcome.association.counts.begin(),
+                        outcome.association.counts.end());
+  // 6. Affine with two scales per placement (Eq. 3); 7. refinement of the best.
+  const RefineOutcome refined =
+      refinement_.choose(outcome.association.placements, times_, outcome.counts);
+  judgeOutcome(refined, outcome);
+  return outcome;
+}
+
+PairOutcome PairPlacer::search() const {
+  std::optional<PairOutcome> best;
+  std::optional<PairOutcome> last;
+  for (std::size_t i = 0; i < kAttempts.size(); ++i) {
+    std::optional<PairOutcome> next = searchOnce(i, last ? &*last : nullptr);
+    if (!next) break;
+    last = next;
+    if (!best || better(*next, *best)) best = std::move(next);
+    if (best->verdict.status != Status::kRejected) break;
+  }
+  // How often it was tried, whichever of them was best.
+  for (auto& [name, value] : best->counts) {
+    if (name == "attempts") value = count(last->counts, "attempts");
+  }
+  return *std::move(best);
+}
+
+PairOutcome PairPlacer::settle(const Placement& placement, std::vector<RefinedPose> rivals) const {
+  PairOutcome outcome;
+  outcome.association.placements = {placement};
+  RefineOutcome refined =
+      refinement_.choose(outcome.association.placements, times_, outcome.counts);
+  refined.rivals = std::move(rivals);
+  judgeOutcome(refined, outcome);
+  return outcome;
+}
+
+void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const {
+  outcome.has_transform = refined.best.has_value();
+  if (!refined.best) {
+    outcome.verdict = rejectBecause(refined.failure);
+    return;
+  }
+  outcome.pose = refined.best->pose;
+  outcome.rivals = refined.rivals;
+  const Fit fit = refinement_.fit(outcome.pose);
+  outcome.overlap = fit.overlap;
+  outcome.correlation = fit.correlation;
+  outcome.vertical = times_.run("vertical", [&] {
+    return fitVertical(fixed_, moving_, outcome.pose, options_.vertical);
+  });
+  // 8. Verdict.
+  times_.run("verdict", [&] {
+    Finding finding = refinement_.examine(outcome.pose, refined, outcome.vertical.residual);
+    finding.overlap = fit.overlap;
+    outcome.verdict = judge(finding, space_, options_.verdict);
+    outcome.evidence = std::move(finding.evidence);
+    outcome.uncertainty = std::move(finding.uncertainty);
+  });
+  if (outcome.verdict.status == Status::kAmbiguous) {
+    for (const RefinedPose& rival : refined.rivals) {
+      if (rival.significance < options_.verdict.rival * outcome.evidence.significance) break;
+      outcome.alternatives.push_back({.pose = rival.pose, .significance = rival.significance});
+    }
+  }
+  if (outcome.vertical.status != VerticalStatus::kOk) {
+    outcome.verdict = rejectBecause("the heights of the two maps do not fit one another");
+  }
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,76 @@
+// Stages 3 to 8 on gridded maps: where the moving map lies and whether that can be trusted.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/pipeline/refinement.hpp"
+
+namespace agricolmap {
+
+/// Another place where the moving map fits.
+struct Alternative {
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
+  /// Moving file → fixed file coordinates [m].
+  Eigen::Affine3d fixed_from_moving = Eigen::Affine3d::Identity();
+  double significance = 0.0;  ///< see Evidence
+};
+
+/// Where a moving map was placed, in the levelled frames. `has_transform == false`: nowhere.
+struct PairOutcome {
+  Verdict verdict;
+  bool has_transform = false;
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
+  VerticalResult vertical;
+  Evidence evidence;
+  std::optional<PoseUncertainty> uncertainty;  ///< nothing when too few blocks can be compared
+  /// Other places, listed when the status is ambiguous, most significant first.
+  std::vector<Alternative> alternatives;
+  double overlap = 0.0;      ///< share of the moving map's cells that the fixed map sees
+  double correlation = 0.0;  ///< of the dense signals at the end
+  std::vector<std::pair<std::string, double>> counts;  ///< per stage, in order
+  AssociationResult association;
+  std::vector<RefinedPose> rivals;  ///< other places that held when refined
+};
+
+/// True when `a` is to be preferred to `b`: accepted first, then ambiguous, then more probable.
+bool better(const PairOutcome& a, const PairOutcome& b);
+
+/// Places the maps of one pair.
+class PairPlacer {
+ public:
+  /// All references must outlive this.
+  PairPlacer(const GridMap& fixed, const GridMap& moving, const SearchSpace& space,
+             const RegistrationOptions& options, StageTimes& times)
+      : fixed_(fixed),
+        moving_(moving),
+        space_(space),
+        options_(options),
+        times_(times),
+        refinement_(fixed, moving, space, options) {}
+
+  /// Searches, first coarsely and, where that does not convince, more finely and freely.
+  PairOutcome search() const;
+  /// One search, the `attempt`-th of `search()`, from 0; nothing when it would find nothing new
+  /// after `before`.
+  std::optional<PairOutcome> searchOnce(std::size_t attempt, const PairOutcome* before) const;
+  /// From a placement that is known already, with its rivals.
+  PairOutcome settle(const Placement& placement, std::vector<RefinedPose> rivals) const;
+
+ private:
+  void judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const;
+
+  const GridMap& fixed_;
+  const GridMap& moving_;
+  const SearchSpace& space_;
+  const RegistrationOptions& options_;
+  StageTimes& times_;
+  PoseRefinement refinement_;
+};
+
+}  // namespace agricolmap

@@ -1,0 +1,41 @@
+#include "agricolmap/pipeline/unknown_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace agricolmap {
+namespace {
+
+constexpr double kLargestFactor = 10.0;
+/// Each search covers this share of its range of scales; the rest is for axes that differ.
+constexpr double kShare = 0.92;
+/// Of the moving map's area, what must fit onto the fixed map at the smallest scale searched.
+constexpr double kLeastInside = 0.5;
+/// Area below which a moving map holds too few plants [m²], at the largest scale searched.
+constexpr double kLeastArea = 1.0;
+
+}  // namespace
+
+std::vector<double> scaleFactors(const Box2& moving, const Box2& fixed,
+                                 const PriorUncertainty& uncertainty) {
+  const double half = kShare * std::max(0.05, logScaleLimit(uncertainty));
+  const double reach = std::log(kLargestFactor);
+  const int count = static_cast<int>(std::ceil((reach - half) / (2.0 * half)));
+  const double step = count > 0 ? (reach - half) / count : 0.0;
+  std::vector<double> logs = {0.0};
+  for (int i = 1; i <= count; ++i) logs.insert(logs.end(), {i * step, -i * step});
+  for (int i = 0; i < count; ++i) {
+    logs.insert(logs.end(), {(i + 0.5) * step, -(i + 0.5) * step});
+  }
+  std::vector<double> factors;
+  const double stretch = std::exp(2.0 * logScaleLimit(uncertainty));  // of an area
+  for (const double log : logs) {
+    const double factor = std::exp(log);
+    const double area = factor * factor * moving.volume();
+    if (kLeastInside * area / stretch > fixed.volume() || area * stretch < kLeastArea) continue;
+    factors.push_back(factor);
+  }
+  return factors;
+}
+
+}  // namespace agricolmap
