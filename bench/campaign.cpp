@@ -242,6 +242,7 @@ bool work(const Arguments& arguments, const std::vector<Job>& jobs, PairMaker& m
       PairRow row = registerPair(pair, name, *job.chosen);
       row.case_name = job.chosen->name;
       row.seed = job.seed;
+      row.field = job.chosen->fieldSeed(job.seed);
       row.threads = static_cast<int>(
           tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
       row.simulate_s = simulate_s;

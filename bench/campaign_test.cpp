@@ -59,6 +59,10 @@ TEST_F(TemporaryTable, RowsSurviveReopening) {
     PairRow first = row("soybean-easy", 7, true, true, 0.0061234567);
     first.stages = "level=0.1;grid=0.2";
     first.note = "a, b\nc";
+    first.field = 6;
+    first.status = "accepted";
+    first.blocks = 16.0;
+    first.probability = 0.97;
     table.append(first);
     EXPECT_TRUE(table.has("soybean-easy", 7, "default"));
   }
@@ -73,6 +77,11 @@ TEST_F(TemporaryTable, RowsSurviveReopening) {
   EXPECT_TRUE(std::isnan(read.errors.scale));
   EXPECT_EQ(read.stages, "level=0.1;grid=0.2");
   EXPECT_EQ(read.note, "a  b c");
+  EXPECT_EQ(read.field, 6);
+  EXPECT_EQ(read.status, "accepted");
+  EXPECT_DOUBLE_EQ(read.blocks, 16.0);
+  EXPECT_DOUBLE_EQ(read.probability, 0.97);
+  EXPECT_TRUE(std::isnan(read.expected_rms));
 }
 
 TEST_F(TemporaryTable, RemovesALineCutOffByACrash) {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/pipeline/registration.hpp"
@@ -18,6 +20,27 @@ std::string stageText(const StageTimes& times) {
     text += fmt::format("{}{}={:.4f}", text.empty() ? "" : ";", stage, seconds);
   }
   return text;
+}
+
+/// What the program found out about its answer.
+void fillEvidence(const Registration& result, PairRow& row) {
+  for (const auto& [name, value] : result.counts) {
+    if (name == "attempts") row.attempts = value;
+  }
+  if (!result.has_transform) return;
+  row.uniqueness = result.evidence.uniqueness;
+  row.agreement = result.evidence.agreement();
+  row.significance = result.evidence.significance;
+  row.overlap = result.overlap;
+  row.correlation = result.correlation;
+  row.blocks = static_cast<double>(result.evidence.blocks.size());
+  double sum = 0.0;
+  for (const BlockEvidence& block : result.evidence.blocks) {
+    if (block.agrees) sum += block.offset.squaredNorm();
+  }
+  if (result.evidence.agreeing > 0) {
+    row.block_rms = std::sqrt(sum / static_cast<double>(result.evidence.agreeing));
+  }
 }
 
 }  // namespace
@@ -70,11 +93,9 @@ PairRow registerPair(const CampaignPair& pair, const std::string& preset_name,
         registerClouds(*pair.fixed, pair.moving, pair.prior, variant(preset_name, chosen), times);
     row.total_s = watch.seconds();
     row.accepted = result.verdict.status == Status::kAccepted;
+    row.status = toString(result.verdict.status);
+    fillEvidence(result, row);
     if (result.has_transform) {
-      row.uniqueness = result.evidence.uniqueness;
-      row.agreement = result.evidence.agreement();
-      row.significance = result.evidence.significance;
-      row.overlap = result.overlap;
       row.errors = evaluateTransform(result.fixed_from_moving, pair.truth, pair.moving);
       row.correct = pair.overlaps && row.errors.within({});
     }
