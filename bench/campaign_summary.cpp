@@ -54,6 +54,8 @@ std::string millimetres(double metres) {
 
 std::string percent(double value) { return fmt::format("{:.1f}", 100.0 * value); }
 
+}  // namespace
+
 std::string targetText(const Target& target) {
   std::string text;
   const auto add = [&](const std::string& part) {
@@ -76,8 +78,6 @@ std::string targetText(const Target& target) {
   addShare("wrong", "≤", target.max_false);
   return text.empty() ? "–" : text;
 }
-
-}  // namespace
 
 Interval wilsonInterval(std::size_t hits, std::size_t trials) {
   if (trials == 0) return {};

@@ -23,6 +23,9 @@ struct Target {
   std::optional<double> max_refused = {};   ///< not accepted, whatever the answer
 };
 
+/// The target in words, a dash for none.
+std::string targetText(const Target& target);
+
 struct Interval {
   double low = 0.0;
   double high = 1.0;
