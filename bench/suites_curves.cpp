@@ -23,7 +23,7 @@ const std::vector<Series>& series() {
       {"length", "ugv.length", {2.0, 3.0, 5.0, 7.0, 10.0, 20.0}, 24.0},
       {"overhang", "ugv.overhang", {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}},
       {"gaps", "field.gaps", {0.05, 0.10, 0.20, 0.30, 0.40, 0.50}},
-      {"plant-size", "field.plant_size", {0.3, 0.5, 0.7, 1.0, 1.4, 1.8, 2.4}},
+      {"plant-size", "field.plant_size", {0.3, 0.5, 0.7, 1.0, 1.4, 1.8, 2.4, 3.2}},
       {"leaf-unshared", "views.leaf_unshared", {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}},
       {"growth", "views.growth", {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}},
       {"drift", "ugv.drift", {0.0, 0.0025, 0.005, 0.01, 0.015, 0.02, 0.03}}};

@@ -47,7 +47,7 @@ class Builder {
     const Target dense = {.max_rms3d = 0.03, .min_found = 0.90, .max_false = 0.0};
     anywhereIn(kLarge, add("none-50m-winter-wheat", Crop::kWinterWheat, dense));
     CampaignCase& closed = add("none-50m-closed-soybean", Crop::kSoybean, dense);
-    closed.options.field.plant_size = 1.5;
+    closed.options.field.plant_size = 2.2;  // four fifths of the soil covered
     anywhereIn(kLarge, closed);
     for (const Crop crop : {Crop::kSoybean, Crop::kSugarBeet10m}) {
       CampaignCase& made =
