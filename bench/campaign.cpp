@@ -1,10 +1,12 @@
 // agricolmap_campaign: how often and how well pairs of unseen seeds are registered.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <vector>
 
@@ -19,6 +21,8 @@
 #include "campaign_cases.hpp"
 #include "campaign_summary.hpp"
 #include "campaign_table.hpp"
+#include "pair_maker.hpp"
+#include "register_pair.hpp"
 #include "revision.hpp"
 
 namespace agricolmap::campaign {
@@ -26,6 +30,7 @@ namespace {
 
 struct Arguments {
   std::string output;
+  std::string suite = "paper";
   std::vector<std::string> cases;
   std::vector<std::string> presets = {"default", "paper"};
   int pairs = 60;
@@ -51,8 +56,7 @@ std::uint64_t hashText(std::string_view text, std::uint64_t hash = 0xCBF29CE4842
 std::string identityOf(const std::vector<CampaignCase>& cases, bool uniform) {
   std::uint64_t hash = hashText("");
   for (const CampaignCase& one : cases) {
-    SimulationOptions options = one.options;
-    hash = hashText(one.name + dumpYaml(optionTable(options)), hash);
+    hash = hashText(one.text(), hash);
   }
   for (const std::string& name : presetNames()) {
     RegistrationOptions options = preset(name);
@@ -69,84 +73,56 @@ struct Job {
   std::vector<std::string> presets;
 };
 
-/// `preset` or `preset:key=value:key=value`.
-RegistrationOptions variant(const std::string& text) {
-  const std::size_t end = text.find(':');
-  RegistrationOptions options = preset(text.substr(0, end));
-  const OptionTable table = optionTable(options);
-  for (std::size_t at = end; at != std::string::npos;) {
-    const std::size_t next = text.find(':', at + 1);
-    const std::string setting = text.substr(at + 1, next - at - 1);
-    const std::size_t equals = setting.find('=');
-    const std::string key = setting.substr(0, equals);
-    const OptionField* field = table.find(key);
-    if (equals == std::string::npos || field == nullptr) {
-      throw UsageError(
-          fmt::format("--presets {}: '{}' is not KEY=VALUE of a known option", text, setting));
-    }
-    parseOption(*field, setting.substr(equals + 1))();
-    at = next;
+/// Puts pairs of one drone's view together, views in the order of their first pair.
+void groupByFlight(std::vector<Job>& jobs) {
+  std::map<std::string, std::size_t> order;
+  std::vector<std::pair<std::size_t, Job>> keyed;
+  for (Job& job : jobs) {
+    const auto at = order.emplace(job.chosen->flightText(job.seed), order.size()).first;
+    keyed.emplace_back(at->second, std::move(job));
   }
-  return options;
+  std::stable_sort(keyed.begin(), keyed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i] = std::move(keyed[i].second);
 }
 
-/// What is left to do, seed by seed, so that an interrupted campaign has all cases.
+/// The presets that still have to register the `i`th pair of a case.
+Job jobFor(const CampaignCase& chosen, int i, const Arguments& arguments, const PairTable& table) {
+  Job job{&chosen, arguments.first_seed + i, {}};
+  if (chosen.max_pairs > 0 && i >= chosen.max_pairs) return job;
+  for (const std::string& name : arguments.presets) {
+    const int limit = name.starts_with("paper") ? arguments.paper_pairs : arguments.pairs;
+    if (i < limit && !table.has(chosen.name, job.seed, name) && canRegister(name, chosen)) {
+      job.presets.push_back(name);
+    }
+  }
+  return job;
+}
+
+/// What is left to do, field by field, so that an interrupted campaign has all cases.
 std::vector<Job> plan(const std::vector<const CampaignCase*>& cases, const Arguments& arguments,
                       const PairTable& table) {
+  int together = 1;
+  for (const CampaignCase* chosen : cases) together = std::max(together, chosen->strips_per_field);
   std::vector<Job> jobs;
-  for (int i = 0; i < std::max(arguments.pairs, arguments.paper_pairs); ++i) {
-    const int seed = arguments.first_seed + i;
+  std::vector<Job> round;
+  const int pairs = std::max(arguments.pairs, arguments.paper_pairs);
+  for (int i = 0; i < pairs;) {
+    const int block = (arguments.first_seed + i) / together;
+    int end = i;
+    while (end < pairs && (arguments.first_seed + end) / together == block) ++end;
+    round.clear();
     for (const CampaignCase* chosen : cases) {
-      if (chosen->max_pairs > 0 && i >= chosen->max_pairs) continue;
-      Job job{chosen, seed, {}};
-      for (const std::string& name : arguments.presets) {
-        const int limit = name.starts_with("paper") ? arguments.paper_pairs : arguments.pairs;
-        if (i < limit && !table.has(chosen->name, seed, name)) job.presets.push_back(name);
+      for (int k = i; k < end; ++k) {
+        Job job = jobFor(*chosen, k, arguments, table);
+        if (!job.presets.empty()) round.push_back(std::move(job));
       }
-      if (!job.presets.empty()) jobs.push_back(std::move(job));
     }
+    if (together > 1) groupByFlight(round);
+    std::move(round.begin(), round.end(), std::back_inserter(jobs));
+    i = end;
   }
   return jobs;
-}
-
-std::string stageText(const StageTimes& times) {
-  std::string text;
-  for (const auto& [stage, seconds] : times.stages()) {
-    text += fmt::format("{}{}={:.4f}", text.empty() ? "" : ";", stage, seconds);
-  }
-  return text;
-}
-
-PairRow registerPair(const CampaignPair& pair, const std::string& preset_name) {
-  PairRow row;
-  row.preset = preset_name;
-  row.negative = !pair.overlaps;
-  row.fixed_points = pair.fixed.size();
-  row.moving_points = pair.moving.size();
-  row.errors = noErrors();
-  StageTimes times;
-  const Stopwatch watch;
-  try {
-    const Registration result =
-        registerClouds(pair.fixed, pair.moving, pair.prior, variant(preset_name), times);
-    row.total_s = watch.seconds();
-    row.accepted = result.verdict.status == Status::kAccepted;
-    if (result.has_transform) {
-      row.uniqueness = result.evidence.uniqueness;
-      row.agreement = result.evidence.agreement();
-      row.significance = result.evidence.significance;
-      row.overlap = result.overlap;
-      row.errors = evaluateTransform(result.fixed_from_moving, pair.truth, pair.moving);
-      row.correct = pair.overlaps && row.errors.within({});
-    }
-    if (!row.accepted) row.note = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
-  } catch (const InputError& error) {
-    // A pair that cannot be used counts as one that was not registered.
-    row.total_s = watch.seconds();
-    row.note = error.what();
-  }
-  row.stages = stageText(times);
-  return row;
 }
 
 /// Says on stderr how far it is: in place on a terminal, else a line every half minute.
@@ -227,7 +203,7 @@ void writeSummary(const Arguments& arguments, const std::vector<CampaignCase>& c
 
 std::vector<const CampaignCase*> chooseCases(const Arguments& arguments,
                                              const std::vector<CampaignCase>& all,
-                                             const RealFields& fields) {
+                                             const PairMaker& maker) {
   std::vector<const CampaignCase*> chosen;
   std::vector<std::string> names;
   for (const CampaignCase& one : all) names.push_back(one.name);
@@ -238,7 +214,10 @@ std::vector<const CampaignCase*> chooseCases(const Arguments& arguments,
           fmt::format("unknown case '{}'; there are: {}", name, fmt::join(names, ", ")));
     }
     const CampaignCase& one = all[static_cast<std::size_t>(at - names.begin())];
-    const std::string reason = fields.unavailable(one.source);
+    std::string reason = maker.unavailable(one.source);
+    if (one.scale_unknown && !knowsScaleUnknown()) {
+      reason = "the registration cannot be told that the scale is unknown";
+    }
     if (reason.empty()) {
       chosen.push_back(&one);
     } else {
@@ -249,7 +228,7 @@ std::vector<const CampaignCase*> chooseCases(const Arguments& arguments,
 }
 
 /// True when nothing is left, false at the time limit.
-bool work(const Arguments& arguments, const std::vector<Job>& jobs, RealFields& fields,
+bool work(const Arguments& arguments, const std::vector<Job>& jobs, PairMaker& maker,
           PairTable& table) {
   const Stopwatch watch;
   Progress progress(jobs, table);
@@ -257,12 +236,13 @@ bool work(const Arguments& arguments, const std::vector<Job>& jobs, RealFields& 
     if (arguments.time_limit > 0.0 && watch.seconds() > arguments.time_limit) return false;
     progress.step(job);
     const Stopwatch making;
-    const CampaignPair pair = makePair(*job.chosen, job.seed, fields);
+    const CampaignPair pair = maker.make(*job.chosen, job.seed);
     const double simulate_s = making.seconds();
     for (const std::string& name : job.presets) {
-      PairRow row = registerPair(pair, name);
+      PairRow row = registerPair(pair, name, *job.chosen);
       row.case_name = job.chosen->name;
       row.seed = job.seed;
+      row.field = job.chosen->fieldSeed(job.seed);
       row.threads = static_cast<int>(
           tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
       row.simulate_s = simulate_s;
@@ -275,9 +255,9 @@ bool work(const Arguments& arguments, const std::vector<Job>& jobs, RealFields& 
 
 void measure(const Arguments& arguments, const std::vector<CampaignCase>& all,
              const std::string& identity) {
-  RealFields fields(arguments.shared);
-  const std::vector<const CampaignCase*> cases = chooseCases(arguments, all, fields);
-  for (const std::string& name : arguments.presets) variant(name);  // throws for unknown ones
+  PairMaker maker(arguments.shared);
+  const std::vector<const CampaignCase*> cases = chooseCases(arguments, all, maker);
+  for (const std::string& name : arguments.presets) variant(name, {});  // throws for unknown ones
   std::error_code error;
   std::filesystem::create_directories(arguments.output, error);
   if (error) {
@@ -285,7 +265,7 @@ void measure(const Arguments& arguments, const std::vector<CampaignCase>& all,
   }
   PairTable table(std::filesystem::path(arguments.output) / "pairs.csv", identity);
   const std::vector<Job> jobs = plan(cases, arguments, table);
-  const bool complete = work(arguments, jobs, fields, table);
+  const bool complete = work(arguments, jobs, maker, table);
   writeSummary(arguments, all, table.rows(), identity);
   if (!complete) {
     fmt::print(stderr, "stopped at the time limit; the same command goes on from here\n");
@@ -294,7 +274,9 @@ void measure(const Arguments& arguments, const std::vector<CampaignCase>& all,
 
 void addFlags(CLI::App& app, Arguments& arguments) {
   app.add_option("-o,--output", arguments.output, "Folder for pairs.csv and the summary");
-  app.add_option("--cases", arguments.cases, "Names of cases [all]")->delimiter(',');
+  app.add_option("--suite", arguments.suite,
+                 fmt::format("Suite of cases: {} [paper]", fmt::join(suiteNames(), ", ")));
+  app.add_option("--cases", arguments.cases, "Names of cases [all of the suite]")->delimiter(',');
   app.add_option("--presets", arguments.presets,
                  "Presets, each with options to change: NAME or NAME:KEY=VALUE:… [default,paper]")
       ->delimiter(',');
@@ -310,7 +292,7 @@ void addFlags(CLI::App& app, Arguments& arguments) {
   app.add_flag("--uniform", arguments.uniform,
                "Errors of the initial guess uniform up to the case's, not always as large");
   app.add_flag("--summary", arguments.summary, "Only summarise the rows that exist");
-  app.add_flag("--list", arguments.list, "List the cases and stop");
+  app.add_flag("--list", arguments.list, "List the suite's cases and stop");
   app.footer("An interrupted campaign goes on where it stopped when called again.");
 }
 
@@ -325,7 +307,7 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
   }
   if (arguments.paper_pairs < 0) arguments.paper_pairs = arguments.pairs;
-  const std::vector<CampaignCase> cases = allCases(arguments.uniform);
+  const std::vector<CampaignCase> cases = suiteCases(arguments.suite, arguments.uniform);
   if (arguments.list) {
     for (const CampaignCase& one : cases) fmt::print("{}\n", one.name);
     return 0;

@@ -1,39 +1,127 @@
 #include "campaign_cases.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <numbers>
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <utility>
 
+#include "agricolmap/config/yaml.hpp"
+#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/io/raster_import.hpp"
-#include "agricolmap/simulate/ortho_file.hpp"
-#include "agricolmap/simulate/simulate.hpp"
+#include "suites.hpp"
 
 namespace agricolmap::campaign {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr const char* kBeetFile = "data/sugarbeet_weedmap_E/map_E.png";
-constexpr const char* kSoybeanFolder = "data/soybean_pliman";
+using Suite = std::pair<std::string, std::function<std::vector<CampaignCase>(bool)>>;
 
-// Inferred from its row distance, see the data's README. The PNG has no georeference.
-constexpr double kBeetGsd = 0.00985;
-// Direction of the strongest peak of the spectrum of its Excess Green.
-constexpr double kBeetRowHeading = 47.5 * kDegree;
-constexpr double kSoybeanRowHeading = 2.0 * kDegree;
-// Half of the mosaic is another crop and bare soil: windows lie around the middle of the beets.
-constexpr int kBeetMiddleCol = 3200;
-constexpr int kBeetMiddleRow = 1860;  // from the top
-constexpr int kBeetWindow = 2132;     // 21 m
+const std::vector<Suite>& suites() {
+  static const std::vector<Suite> all = {{"paper", paperSuite},
+                                         {"locate", locateSuite},
+                                         {"curves", curvesSuite},
+                                         {"calibrate", calibrateSuite},
+                                         {"develop", developSuite}};
+  return all;
+}
 
-struct GuessError {
-  double translation;
-  double heading_deg;
-  double scale;
-};
-constexpr GuessError kEasy = {1.0, 2.0, 0.05};
-constexpr GuessError kJoint = {5.0, 11.5, 0.30};
+/// What the drone's cloud depends on, see CampaignCase::flightText.
+bool belongsToFlight(const std::string& path) {
+  static const std::vector<std::string> flight = {"views.leaf_unshared", "views.wind",
+                                                  "views.sun_hour", "views.overcast"};
+  return path.starts_with("field.") || path.starts_with("uav.") ||
+         std::find(flight.begin(), flight.end(), path) != flight.end();
+}
+
+/// FNV-1a: the same draw for an option whatever other ranges a case has.
+std::uint64_t hashPath(const std::string& path) {
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (const char c : path) hash = (hash ^ static_cast<std::uint8_t>(c)) * 0x100000001B3ULL;
+  return hash;
+}
+
+}  // namespace
+
+SimulationOptions CampaignCase::optionsFor(int seed) const {
+  SimulationOptions drawn = options;
+  drawn.seed = fieldSeed(seed);
+  const OptionTable table = optionTable(drawn);
+  for (const OptionRange& range : ranges) {
+    const OptionField* field = table.find(range.path);
+    if (field == nullptr || !std::holds_alternative<double*>(field->value)) {
+      throw UsageError(fmt::format("case {}: no number is called {}", name, range.path));
+    }
+    const int of = belongsToFlight(range.path) ? fieldSeed(seed) : seed;
+    Random random = Random::stream(static_cast<std::uint64_t>(of), hashPath(range.path));
+    *std::get<double*>(field->value) = range.values.empty()
+                                           ? random.uniform(range.low, range.high)
+                                           : range.values[random.below(range.values.size())];
+  }
+  return drawn;
+}
+
+std::string CampaignCase::flightText(int seed) const {
+  SimulationOptions flown = optionsFor(seed);
+  const GeotagOptions geotag = flown.geotag;
+  const SimulationOptions usual;
+  flown.ugv = usual.ugv;
+  flown.geotag = usual.geotag;
+  flown.geotag.utm = geotag.utm;
+  flown.views.growth = usual.views.growth;
+  flown.views.sun_hours = usual.views.sun_hours;
+  flown.views.weeds_pulled = usual.views.weeds_pulled;
+  flown.other_field = flown.beyond_map = flown.mirrored = false;
+  return fmt::format("{} {}", static_cast<int>(source), dumpYaml(optionTable(flown)));
+}
+
+std::string CampaignCase::text() const {
+  SimulationOptions copy = options;
+  std::string text = fmt::format("{} {} {} {}\n{}", name, static_cast<int>(source),
+                                 strips_per_field, scale_unknown, dumpYaml(optionTable(copy)));
+  for (const OptionRange& range : ranges) {
+    text += fmt::format("{} {} {} {}\n", range.path, range.low, range.high,
+                        fmt::join(range.values, " "));
+  }
+  if (prior)
+    text += fmt::format("{} {} {}\n", prior->translation, prior->heading_deg, prior->scale);
+  return text;
+}
+
+std::vector<std::string> suiteNames() {
+  std::vector<std::string> names;
+  for (const Suite& suite : suites()) names.push_back(suite.first);
+  return names;
+}
+
+std::vector<CampaignCase> suiteCases(const std::string& suite, bool uniform) {
+  for (const auto& [name, make] : suites()) {
+    if (name == suite) return make(uniform);
+  }
+  throw UsageError(
+      fmt::format("unknown suite '{}'; there are: {}", suite, fmt::join(suiteNames(), ", ")));
+}
+
+const std::vector<NamedCrop>& namedCrops() {
+  static const std::vector<NamedCrop> all = {{"soybean", Crop::kSoybean},
+                                             {"sugar-beet-10m", Crop::kSugarBeet10m},
+                                             {"sugar-beet-20m", Crop::kSugarBeet20m},
+                                             {"winter-wheat", Crop::kWinterWheat},
+                                             {"maize", Crop::kMaize}};
+  return all;
+}
+
+std::vector<NamedCrop> rowCrops() {
+  std::vector<NamedCrop> crops = namedCrops();
+  std::erase_if(crops, [](const NamedCrop& one) { return one.crop == Crop::kWinterWheat; });
+  return crops;
+}
+
+const NamedCrop& namedCrop(Crop crop) {
+  return *std::find_if(namedCrops().begin(), namedCrops().end(),
+                       [&](const NamedCrop& one) { return one.crop == crop; });
+}
 
 void setGuess(SimulationOptions& options, const GuessError& error, bool uniform) {
   options.geotag.translation = error.translation;
@@ -42,8 +130,17 @@ void setGuess(SimulationOptions& options, const GuessError& error, bool uniform)
   options.geotag.uniform = uniform;
 }
 
-CampaignCase simulatedCase(std::string name, Crop crop, const GuessError& error, bool uniform,
-                           Target target) {
+void setDifference(SimulationOptions& options, const Difference& difference) {
+  options.views.leaf_unshared = difference.leaf_unshared;
+  options.views.wind = difference.wind;
+  options.views.growth = difference.growth;
+  options.views.sun_hours = difference.sun_hours;
+  options.views.weeds_pulled = difference.weeds_pulled;
+  options.ugv.drift = difference.drift;
+}
+
+CampaignCase cropCase(std::string name, Crop crop, const GuessError& error, bool uniform,
+                      const Target& target) {
   CampaignCase made;
   made.name = std::move(name);
   made.options = cropPreset(crop);
@@ -52,132 +149,17 @@ CampaignCase simulatedCase(std::string name, Crop crop, const GuessError& error,
   return made;
 }
 
-CampaignCase beetMosaicCase(bool uniform) {
-  CampaignCase made =
-      simulatedCase("semireal-sugarbeet", Crop::kSugarBeet10m, {3.0, 6.0, 0.15}, uniform,
-                    {.min_success = 0.98, .max_accepted = {}, .max_rms = 0.008});
-  made.source = PairSource::kBeetMosaic;
-  return made;
+void forgetGuess(CampaignCase& made) {
+  // Uniform, as every heading must be as likely as every other.
+  setGuess(made.options, {made.options.field.width, 180.0, 0.30}, true);
+  made.prior = PriorUncertainty::none();
 }
 
-CampaignCase soybeanCase(bool uniform) {
-  CampaignCase made =
-      simulatedCase("real-soybean", Crop::kSoybean, {1.0, 3.0, 0.10}, uniform,
-                    {.min_success = 1.0, .max_accepted = {}, .max_rms = 0.02, .worst_rms = true});
-  made.source = PairSource::kSoybean;
-  made.max_pairs = 10;
-  // The plot is 11.4 m x 5.6 m. Its plants are as they were at the flight: what differs is the
-  // sampling, the noise, the colours and the path.
-  made.options.ugv.length = 6.0;
-  made.options.ugv.width = 2.0;
-  made.options.views.leaf_unshared = 0.0;
-  made.options.views.wind = 0.0;
-  made.options.views.growth = 1.0;
-  made.options.geotag.utm = false;
-  return made;
-}
-
-CampaignPair fromSimulation(SimulatedPair pair) {
-  CampaignPair made;
-  made.fixed = std::move(pair.uav);
-  made.moving = std::move(pair.ugv);
-  made.prior = pair.prior;
-  made.truth.best_affine = pair.best_affine;
-  made.truth.points = std::move(pair.truth);
-  made.overlaps = pair.overlaps;
-  return made;
-}
-
-}  // namespace
-
-std::vector<CampaignCase> allCases(bool uniform) {
-  const std::vector<std::pair<std::string, Crop>> crops = {{"soybean", Crop::kSoybean},
-                                                           {"sugar-beet-10m", Crop::kSugarBeet10m},
-                                                           {"sugar-beet-20m", Crop::kSugarBeet20m},
-                                                           {"winter-wheat", Crop::kWinterWheat}};
-  const Target easy = {.min_success = 0.98, .max_accepted = {}, .max_rms = 0.010};
-  const Target joint = {.min_success = 0.95, .max_accepted = {}, .max_rms = 0.012};
-  const Target other = {.min_success = {}, .max_accepted = 0.02, .max_rms = {}};
-  std::vector<CampaignCase> cases;
-  for (const auto& [name, crop] : crops) {
-    cases.push_back(simulatedCase(name + "-easy", crop, kEasy, uniform, easy));
-  }
-  for (const auto& [name, crop] : crops) {
-    cases.push_back(simulatedCase(name + "-joint", crop, kJoint, uniform, joint));
-  }
-  cases.push_back(simulatedCase("maize-joint", Crop::kMaize, kJoint, uniform, {}));
-  for (const auto& [name, crop] : crops) {
-    cases.push_back(simulatedCase("other-field-" + name, crop, kJoint, uniform, other));
-    cases.back().options.other_field = true;
-  }
-  cases.push_back(beetMosaicCase(uniform));
-  cases.push_back(soybeanCase(uniform));
-  return cases;
-}
-
-std::string RealFields::unavailable(PairSource source) const {
-  if (source == PairSource::kSimulated) return {};
-  const std::filesystem::path path =
-      shared_ / (source == PairSource::kBeetMosaic ? kBeetFile : kSoybeanFolder);
-  if (std::filesystem::exists(path)) return {};
-  return fmt::format("{} is not here; give --shared", path.string());
-}
-
-CampaignPair RealFields::beetPair(const SimulationOptions& options) const {
-  OrthoFileOptions file;
-  file.raster.bands = BandOrder::kGrb;  // its false colours have red and green swapped
-  file.gsd = kBeetGsd;
-  // Another window for each seed, by up to half a metre.
-  Random random = Random::stream(static_cast<std::uint64_t>(options.seed), 0xBEE7);
-  PixelWindow window{kBeetMiddleCol - kBeetWindow / 2 - 50, kBeetMiddleRow + 51 - kBeetWindow / 2,
-                     kBeetWindow, kBeetWindow};
-  window.col += static_cast<int>(random.below(101));
-  window.row -= static_cast<int>(random.below(101));
-  OrthoField field = readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, file, window);
-  field.row_heading = kBeetRowHeading;
-  return fromSimulation(simulateFromOrtho(field, options));
-}
-
-RealFields::Soybean RealFields::loadSoybean(const std::filesystem::path& folder) {
-  Soybean loaded;
-  loaded.cloud = importOrthoDsm(folder / "soy_ortho.tif", folder / "soy_dsm.tif");
-  OrthoField& field = loaded.field;
-  field = readOrtho({.ortho = folder / "soy_ortho.tif",
-                     .dsm = folder / "soy_dsm.tif",
-                     .dtm = folder / "soy_dtm.tif"});
-  field.row_heading = kSoybeanRowHeading;
-  // The simulator counts heights from the ground in the middle of the mosaic.
-  const float zero = field.ground(field.ground.rows() / 2, field.ground.cols() / 2);
-  loaded.place << field.corner.value(), static_cast<double>(zero);
-  return loaded;
-}
-
-CampaignPair RealFields::soybeanPair(const SimulationOptions& options) {
-  if (!soybean_) soybean_ = loadSoybean(shared_ / kSoybeanFolder);
-  SimulationOptions here = options;
-  here.uav.gsd = soybean_->field.gsd;
-  CampaignPair made = fromSimulation(simulateFromOrtho(soybean_->field, here));
-  // The fixed cloud is the real one, as imported; only the strip passes through the simulator.
-  made.fixed = soybean_->cloud;
-  const Eigen::Translation3d move(soybean_->place);
-  made.prior = move * made.prior;
-  made.truth.best_affine = move * made.truth.best_affine;
-  for (Eigen::Vector3d& point : made.truth.points) point += soybean_->place;
-  return made;
-}
-
-CampaignPair makePair(const CampaignCase& chosen, int seed, RealFields& fields) {
-  SimulationOptions options = chosen.options;
-  options.seed = seed;
-  switch (chosen.source) {
-    case PairSource::kBeetMosaic:
-      return fields.beetPair(options);
-    case PairSource::kSoybean:
-      return fields.soybeanPair(options);
-    case PairSource::kSimulated:
-      break;
-  }
-  return fromSimulation(simulatePair(options));
+void shiftByRows(CampaignCase& made) {
+  const double spacing = made.options.field.row_spacing;
+  made.options.geotag.across_rows = spacing * std::max(1.0, std::round(0.5 / spacing));
+  setGuess(made.options, {0.1, 1.0, 0.03}, false);
+  made.prior = PriorUncertainty{.translation = 0.3, .heading_deg = 3.0, .scale = 0.05};
 }
 
 }  // namespace agricolmap::campaign

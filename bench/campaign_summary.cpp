@@ -22,6 +22,9 @@ SummaryLine summariseOne(const std::vector<const PairRow*>& rows) {
     line.negative = row->negative;
     line.accepted += row->accepted ? 1 : 0;
     line.successes += row->success() ? 1 : 0;
+    line.found +=
+        !row->negative && row->accepted && row->errors.rms_horizontal <= SuccessLimits{}.rms ? 1
+                                                                                             : 0;
     line.false_accepts += row->accepted && !row->correct ? 1 : 0;
     times.push_back(row->total_s);
     if (!row->success()) continue;
@@ -51,6 +54,8 @@ std::string millimetres(double metres) {
 
 std::string percent(double value) { return fmt::format("{:.1f}", 100.0 * value); }
 
+}  // namespace
+
 std::string targetText(const Target& target) {
   std::string text;
   const auto add = [&](const std::string& part) {
@@ -62,11 +67,17 @@ std::string targetText(const Target& target) {
     add(fmt::format("{} ≤ {:.0f} mm", target.worst_rms ? "worst" : "median",
                     1000.0 * *target.max_rms));
   }
-  if (target.max_accepted) add(fmt::format("accepted ≤ {:.0f} %", 100.0 * *target.max_accepted));
+  if (target.max_rms3d) add(fmt::format("3-D ≤ {:.0f} mm", 1000.0 * *target.max_rms3d));
+  if (target.max_time) add(fmt::format("≤ {:.1f} s", *target.max_time));
+  const auto addShare = [&](const char* name, const char* sign, std::optional<double> limit) {
+    if (limit) add(fmt::format("{} {} {:.0f} %", name, sign, 100.0 * *limit));
+  };
+  addShare("found", "≥", target.min_found);
+  addShare("refused", "≤", target.max_refused);
+  addShare("accepted", "≤", target.max_accepted);
+  addShare("wrong", "≤", target.max_false);
   return text.empty() ? "–" : text;
 }
-
-}  // namespace
 
 Interval wilsonInterval(std::size_t hits, std::size_t trials) {
   if (trials == 0) return {};
@@ -89,13 +100,25 @@ double quantile(std::vector<double> values, double share_below) {
 }
 
 std::optional<bool> SummaryLine::met() const {
-  if (!target.min_success && !target.max_accepted && !target.max_rms) return std::nullopt;
-  const double rms = target.worst_rms ? rms_worst : rms_median;
-  const bool success_met = !target.min_success || share(successes, pairs) >= *target.min_success;
-  const bool accepted_met = !target.max_accepted || share(accepted, pairs) <= *target.max_accepted;
-  // NaN, no success at all, is not met.
-  const bool rms_met = !target.max_rms || rms <= *target.max_rms;
-  return success_met && accepted_met && rms_met;
+  bool asked = false;
+  bool met = true;
+  const auto atLeast = [&](std::optional<double> limit, double value) {
+    if (!limit) return;
+    asked = true;
+    met = met && value >= *limit;  // NaN, no success at all, meets nothing
+  };
+  const auto atMost = [&](std::optional<double> limit, double value) {
+    if (limit) atLeast(-*limit, -value);
+  };
+  atLeast(target.min_success, share(successes, pairs));
+  atLeast(target.min_found, share(found, pairs));
+  atMost(target.max_accepted, share(accepted, pairs));
+  atMost(target.max_false, share(false_accepts, pairs));
+  atMost(target.max_refused, share(pairs - accepted, pairs));
+  atMost(target.max_rms, target.worst_rms ? rms_worst : rms_median);
+  atMost(target.max_rms3d, rms3d_median);
+  atMost(target.max_time, time_median);
+  return asked ? std::optional<bool>(met) : std::nullopt;
 }
 
 std::vector<SummaryLine> summarise(const std::vector<PairRow>& rows,

@@ -12,11 +12,19 @@ namespace agricolmap::campaign {
 
 /// What a case should reach. Limits on shares are in 0…1, on errors in metres.
 struct Target {
-  std::optional<double> min_success;
-  std::optional<double> max_accepted;  ///< for pairs of different fields
-  std::optional<double> max_rms;       ///< horizontal RMS to the best affine, of successes
-  bool worst_rms = false;              ///< max_rms is for the worst success, else for the median
+  std::optional<double> min_success = {};
+  std::optional<double> max_accepted = {};  ///< for pairs of different fields
+  std::optional<double> max_rms = {};       ///< horizontal RMS to the best affine, of successes
+  bool worst_rms = false;                   ///< max_rms is for the worst success, else the median
+  std::optional<double> max_rms3d = {};     ///< median RMS over the points, of successes
+  std::optional<double> max_time = {};      ///< median [s]
+  std::optional<double> min_found = {};     ///< accepted and right in the plane
+  std::optional<double> max_false = {};     ///< accepted and wrong
+  std::optional<double> max_refused = {};   ///< not accepted, whatever the answer
 };
+
+/// The target in words, a dash for none.
+std::string targetText(const Target& target);
 
 struct Interval {
   double low = 0.0;
@@ -37,6 +45,7 @@ struct SummaryLine {
   std::size_t pairs = 0;
   std::size_t successes = 0;
   std::size_t accepted = 0;
+  std::size_t found = 0;          ///< accepted and within 5 cm horizontally
   std::size_t false_accepts = 0;  ///< accepted, yet outside the limits
   Interval success_interval;
   Interval accepted_interval;

@@ -20,10 +20,12 @@ namespace agricolmap::campaign {
 namespace {
 
 constexpr std::string_view kHeader =
-    "case,seed,preset,negative,accepted,success,correct,rms_m,rms_horizontal_m,rms_vertical_m,"
-    "worst_m,rms_to_best_affine_m,e_t_m,e_r_rad,e_s,uniqueness,agreement,significance,overlap,"
-    "fixed_points,moving_points,threads,simulate_s,total_s,stages,note";
-constexpr std::size_t kColumns = 26;
+    "case,seed,field,preset,negative,status,accepted,success,correct,rms_m,rms_horizontal_m,"
+    "rms_vertical_m,worst_m,rms_to_best_affine_m,e_t_m,e_r_rad,e_s,uniqueness,agreement,"
+    "significance,overlap,correlation,blocks,block_rms_m,attempts,expected_rms_m,probability,"
+    "mahalanobis2,centre_mahalanobis2,fixed_points,moving_points,threads,simulate_s,total_s,stages,"
+    "note";
+constexpr std::size_t kColumns = 36;
 
 using ErrorField = double RegistrationErrors::*;
 constexpr std::array<ErrorField, 8> kErrorFields = {&RegistrationErrors::rms,
@@ -35,8 +37,11 @@ constexpr std::array<ErrorField, 8> kErrorFields = {&RegistrationErrors::rms,
                                                     &RegistrationErrors::rotation,
                                                     &RegistrationErrors::scale};
 using EvidenceField = double PairRow::*;
-constexpr std::array<EvidenceField, 4> kEvidenceFields = {
-    &PairRow::uniqueness, &PairRow::agreement, &PairRow::significance, &PairRow::overlap};
+constexpr std::array<EvidenceField, 12> kEvidenceFields = {
+    &PairRow::uniqueness,  &PairRow::agreement,    &PairRow::significance,
+    &PairRow::overlap,     &PairRow::correlation,  &PairRow::blocks,
+    &PairRow::block_rms,   &PairRow::attempts,     &PairRow::expected_rms,
+    &PairRow::probability, &PairRow::mahalanobis2, &PairRow::centre_mahalanobis2};
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
@@ -51,9 +56,9 @@ std::string plain(std::string text) {
 }
 
 std::string toLine(const PairRow& row) {
-  std::string line =
-      fmt::format("{},{},{},{:d},{:d},{:d},{:d}", row.case_name, row.seed, row.preset, row.negative,
-                  row.accepted, row.success(), row.correct);
+  std::string line = fmt::format("{},{},{},{},{:d},{},{:d},{:d},{:d}", row.case_name, row.seed,
+                                 row.field, row.preset, row.negative, plain(row.status),
+                                 row.accepted, row.success(), row.correct);
   for (const ErrorField field : kErrorFields) line += fmt::format(",{}", number(row.errors.*field));
   for (const EvidenceField field : kEvidenceFields) line += fmt::format(",{}", number(row.*field));
   line += fmt::format(",{},{},{},{:.4f},{:.4f},{},{}\n", row.fixed_points, row.moving_points,
@@ -108,8 +113,10 @@ PairRow parseLine(std::string_view line, std::string place) {
   PairRow row;
   row.case_name = reader.text();
   row.seed = static_cast<int>(reader.whole());
+  row.field = static_cast<int>(reader.whole());
   row.preset = reader.text();
   row.negative = reader.flag();
+  row.status = reader.text();
   row.accepted = reader.flag();
   reader.flag();  // success follows from the two beside it
   row.correct = reader.flag();

@@ -19,7 +19,9 @@ namespace agricolmap::campaign {
 struct PairRow {
   std::string case_name;
   int seed = 0;
+  int field = 0;  ///< seed of the field: pairs of one field are not independent
   std::string preset;
+  std::string status;  ///< of the verdict, in its words
   bool accepted = false;
   bool correct = false;   ///< within SuccessLimits, whatever the verdict
   bool negative = false;  ///< the clouds come from different fields: nothing can be correct
@@ -28,6 +30,16 @@ struct PairRow {
   double agreement = std::numeric_limits<double>::quiet_NaN();
   double significance = std::numeric_limits<double>::quiet_NaN();
   double overlap = std::numeric_limits<double>::quiet_NaN();
+  double correlation = std::numeric_limits<double>::quiet_NaN();
+  double blocks = std::numeric_limits<double>::quiet_NaN();        ///< usable ones
+  double block_rms = std::numeric_limits<double>::quiet_NaN();     ///< of the agreeing ones [m]
+  double attempts = std::numeric_limits<double>::quiet_NaN();      ///< searches until this answer
+  double expected_rms = std::numeric_limits<double>::quiet_NaN();  ///< as the program expects [m]
+  double probability = std::numeric_limits<double>::quiet_NaN();   ///< of being right
+  /// Squared error of the five horizontal parameters over the covariance that the program states,
+  /// and that of the strip's centre alone.
+  double mahalanobis2 = std::numeric_limits<double>::quiet_NaN();
+  double centre_mahalanobis2 = std::numeric_limits<double>::quiet_NaN();
   std::size_t fixed_points = 0;
   std::size_t moving_points = 0;
   int threads = 0;

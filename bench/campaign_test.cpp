@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "agricolmap/core/error.hpp"
-#include "campaign_cases.hpp"
 #include "campaign_summary.hpp"
 #include "campaign_table.hpp"
 
@@ -59,6 +59,10 @@ TEST_F(TemporaryTable, RowsSurviveReopening) {
     PairRow first = row("soybean-easy", 7, true, true, 0.0061234567);
     first.stages = "level=0.1;grid=0.2";
     first.note = "a, b\nc";
+    first.field = 6;
+    first.status = "accepted";
+    first.blocks = 16.0;
+    first.probability = 0.97;
     table.append(first);
     EXPECT_TRUE(table.has("soybean-easy", 7, "default"));
   }
@@ -73,6 +77,11 @@ TEST_F(TemporaryTable, RowsSurviveReopening) {
   EXPECT_TRUE(std::isnan(read.errors.scale));
   EXPECT_EQ(read.stages, "level=0.1;grid=0.2");
   EXPECT_EQ(read.note, "a  b c");
+  EXPECT_EQ(read.field, 6);
+  EXPECT_EQ(read.status, "accepted");
+  EXPECT_DOUBLE_EQ(read.blocks, 16.0);
+  EXPECT_DOUBLE_EQ(read.probability, 0.97);
+  EXPECT_TRUE(std::isnan(read.expected_rms));
 }
 
 TEST_F(TemporaryTable, RemovesALineCutOffByACrash) {
@@ -138,37 +147,6 @@ TEST(Summary, NoSuccessMeetsNoLimitOfError) {
   const auto lines = summarise({row("a", 1, false, false, 0.001)}, {"a"},
                                {{"a", {.min_success = {}, .max_accepted = {}, .max_rms = 0.01}}});
   EXPECT_EQ(lines.front().met(), false);
-}
-
-TEST(Cases, HaveDistinctNamesAndSoundOptions) {
-  std::set<std::string> names;
-  for (const CampaignCase& one : allCases(false)) {
-    EXPECT_TRUE(names.insert(one.name).second) << one.name;
-    EXPECT_NO_THROW(checkOptions(one.options)) << one.name;
-    EXPECT_EQ(one.options.other_field, one.target.max_accepted.has_value()) << one.name;
-  }
-  EXPECT_EQ(names.size(), 15U);
-}
-
-/// Needs the shared data; the mosaic's place and heights must survive cutting and shifting.
-TEST(Cases, SoybeanTruthLiesOnTheImportedCloud) {
-  RealFields fields(AGRICOLMAP_SHARED_DIR);
-  const std::string missing = fields.unavailable(PairSource::kSoybean);
-  if (!missing.empty()) GTEST_SKIP() << missing;
-  for (const CampaignCase& one : allCases(false)) {
-    if (one.source != PairSource::kSoybean) continue;
-    const CampaignPair pair = makePair(one, 3, fields);
-    const RegistrationErrors errors =
-        evaluateTransform(pair.truth.best_affine, pair.truth, pair.moving);
-    EXPECT_LT(errors.rms, 0.03);
-    Box3 box = boundingBox(pair.fixed);
-    std::size_t inside = 0;
-    for (const Eigen::Vector3d& point : pair.truth.points) {
-      const Eigen::Vector3f local = (point - pair.fixed.origin).cast<float>();
-      inside += ((local - box.min).minCoeff() > -0.1F && (box.max - local).minCoeff() > -0.1F);
-    }
-    EXPECT_GT(static_cast<double>(inside), 0.98 * static_cast<double>(pair.truth.points.size()));
-  }
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 set(revision unknown)
 find_package(Git QUIET)
 if(Git_FOUND)
-  set(watched src bench/campaign_cases.cpp)
+  set(watched src bench/campaign_cases.cpp bench/pair_maker.cpp bench/register_pair.cpp bench/suites_calibrate.cpp
+    bench/suites_curves.cpp bench/suites_locate.cpp bench/suites_paper.cpp)
   execute_process(COMMAND ${GIT_EXECUTABLE} log -1 --format=%h -- ${watched}
                   WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE commit ERROR_QUIET
                   OUTPUT_STRIP_TRAILING_WHITESPACE)

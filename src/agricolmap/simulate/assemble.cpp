@@ -32,6 +32,13 @@ bool insideField(const Eigen::Vector2d& point, const Eigen::Vector2d& size) {
   return point.x() >= 0.0 && point.y() >= 0.0 && point.x() <= size.x() && point.y() <= size.y();
 }
 
+void checkSeen(const FieldPoints& points) {
+  if (!points.xyz.empty()) return;
+  throw UsageError(
+      "the simulated sensors saw no point; raise uav.density, ugv.edge_density or "
+      "ugv.camera_height");
+}
+
 }  // namespace
 
 double stripHeading(const UgvOptions& options, double row_heading) {
@@ -105,19 +112,28 @@ Eigen::Vector3d madeUpBase(const GeotagOptions& options) {
   return options.utm ? Eigen::Vector3d(352417.36, 4815306.82, 118.64) : Eigen::Vector3d::Zero();
 }
 
-SimulatedPair assemblePair(const SimulationOptions& options, const Eigen::Vector3d& base,
-                           const StripPlace& strip, FieldPoints above, FieldPoints below,
-                           std::uint64_t seed) {
-  if (above.xyz.empty() || below.xyz.empty()) {
-    throw UsageError(
-        "the simulated sensors saw no point; raise uav.density, ugv.edge_density or "
-        "ugv.camera_height");
+std::uint64_t stripSeed(std::uint64_t pair_seed, int index) {
+  return index == 0 ? pair_seed : hashBits(pair_seed, static_cast<std::uint64_t>(index));
+}
+
+Cloud cloudFromAbove(FieldPoints above, const Eigen::Vector3d& base) {
+  checkSeen(above);
+  Cloud cloud;
+  cloud.name = "simulated UAV cloud";
+  cloud.origin = base;
+  cloud.xyz = std::move(above.xyz);
+  cloud.rgb = std::move(above.rgb);
+  return cloud;
+}
+
+SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vector3d& base,
+                             const StripPlace& strip, FieldPoints below, std::uint64_t seed) {
+  checkSeen(below);
+  if (options.mirrored) {
+    for (Eigen::Vector3f& point : below.xyz) point.y() = -point.y();
   }
-  SimulatedPair pair;
-  pair.uav.name = "simulated UAV cloud";
-  pair.uav.origin = base;
-  pair.uav.xyz = std::move(above.xyz);
-  pair.uav.rgb = std::move(above.rgb);
+  SimulatedStrip pair;
+  pair.overlaps = !options.other_field && !options.beyond_map && !options.mirrored;
 
   const std::size_t count = below.xyz.size();
   const double mean_z = parallelSum(count, 1U << 15, 0.0,
@@ -131,7 +147,9 @@ SimulatedPair assemblePair(const SimulationOptions& options, const Eigen::Vector
                         static_cast<double>(count);
   pair.strip_centre = base + Eigen::Vector3d(strip.centre.x(), strip.centre.y(), mean_z);
   pair.strip_heading = strip.heading;
-  const Geotag tag = drawGeotag(options.geotag, pair.strip_centre, seed);
+  const double across_rows =
+      strip.heading - stripHeading(options.ugv, 0.0) + 0.5 * std::numbers::pi;
+  const Geotag tag = drawGeotag(options.geotag, pair.strip_centre, across_rows, seed);
   pair.nominal = tag.nominal;
   pair.prior = tag.prior;
 

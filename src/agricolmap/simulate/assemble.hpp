@@ -39,11 +39,16 @@ Visit driveOf(const ViewOptions& views, std::uint64_t seed);
 /// Where the UAV file's coordinates begin in a field that is nowhere: like UTM, or at zero.
 Eigen::Vector3d madeUpBase(const GeotagOptions& options);
 
-/// Files, truth and affines from the points of both views. `base` is the field frame's zero in the
-/// UAV file's coordinates. `above` is in the field frame, `below`
-/// as senseFromGround gives it.
-SimulatedPair assemblePair(const SimulationOptions& options, const Eigen::Vector3d& base,
-                           const StripPlace& strip, FieldPoints above, FieldPoints below,
-                           std::uint64_t seed);
+/// The seed of a strip's own random numbers; strip 0 has the pair's.
+std::uint64_t stripSeed(std::uint64_t pair_seed, int index);
+
+/// The drone's file. `base` is the field frame's zero in its coordinates; throws UsageError when
+/// there is no point.
+Cloud cloudFromAbove(FieldPoints above, const Eigen::Vector3d& base);
+
+/// The robot's file, its truth and affines, from points as senseFromGround gives them. Mirrors it
+/// where the options say so. Throws UsageError when there is no point.
+SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vector3d& base,
+                             const StripPlace& place, FieldPoints below, std::uint64_t seed);
 
 }  // namespace agricolmap

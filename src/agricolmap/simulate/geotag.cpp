@@ -7,7 +7,8 @@
 
 namespace agricolmap {
 
-Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, std::uint64_t seed) {
+Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, double across_rows,
+                  std::uint64_t seed) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   Random random = Random::stream(seed, 7);
   const auto magnitude = [&](double value) {
@@ -30,6 +31,9 @@ Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, s
   const double axes = kDegree * options.file_heading_deg;
   const Eigen::Vector3d begin(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0),
                               random.uniform(-0.5, 0.5));
+  const double aside = random.chance(0.5) ? options.across_rows : -options.across_rows;
+  error += aside * Eigen::Vector3d(std::cos(across_rows), std::sin(across_rows), 0.0);
+  const double factor = std::pow(options.unknown_scale, random.uniform(-1.0, 1.0));
 
   // The prior places the centre `error` away and takes heading, level and scale at face value.
   Geotag tag;
@@ -38,8 +42,8 @@ Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, s
     tag.prior.translation() = centre + error - tag.prior.linear() * begin;
   }
   const Eigen::Vector3d file_centre = tag.prior.inverse() * Eigen::Vector3d(centre + error);
-  // Lengths in the file are those of the field times the scale error.
-  const Eigen::Vector3d unscale(1.0 / scale_x, 1.0 / scale_y, 1.0);
+  // Lengths in the file are those of the field times the scale error, by `factor` too small.
+  const Eigen::Vector3d unscale(factor / scale_x, factor / scale_y, factor);
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()) *
                                 Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
                                 Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))

@@ -13,7 +13,9 @@ struct Geotag {
   Eigen::Affine3d prior = Eigen::Affine3d::Identity();    ///< the initial guess
 };
 
-/// Draws the errors of a strip that is centred at `centre` (UAV file coordinates).
-Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, std::uint64_t seed);
+/// Draws the errors of a strip that is centred at `centre` (UAV file coordinates), in a field whose
+/// rows lie one beside the other in the direction `across_rows` [rad].
+Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, double across_rows,
+                  std::uint64_t seed);
 
 }  // namespace agricolmap

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "agricolmap/core/raster.hpp"
 #include "agricolmap/simulate/simulate.hpp"
@@ -24,6 +26,27 @@ struct OrthoField {
   Raster<float> ground;        ///< terrain [m]; empty: from the lowest surface around
 };
 
+class OrthoScene;
+
+/// Like SimulatedField, on a real orthomosaic; see simulateFromOrtho.
+class SimulatedOrtho {
+ public:
+  SimulatedOrtho(OrthoField field, const SimulationOptions& options);
+  ~SimulatedOrtho();
+  SimulatedOrtho(const SimulatedOrtho&) = delete;
+  SimulatedOrtho& operator=(const SimulatedOrtho&) = delete;
+
+  const Cloud& uav() const { return uav_; }
+  Cloud takeUav() && { return std::move(uav_); }
+  SimulatedStrip strip(const SimulationOptions& options, int index = 0) const;
+
+ private:
+  OrthoField field_;
+  SimulationOptions options_;
+  std::unique_ptr<const OrthoScene> scene_;  ///< looks at field_
+  Cloud uav_;
+};
+
 /// Like simulatePair, with the layout of `field` in place of FieldOptions' (of which only the
 /// relief of the soil and plant_size are used, where there is no height). The flight sees the
 /// orthomosaic as it is. The drive sees it with `leaf_unshared` of the variance of its texture
@@ -31,6 +54,7 @@ struct OrthoField {
 /// `weeds_pulled` on nothing. For `other_field`, the strip is cut from the mosaic mirrored across
 /// its rows. With GeotagOptions::utm, the UAV file has the mosaic's coordinates where it has any,
 /// and heights as the surface model has them.
+/// `beyond_map` is refused.
 /// Throws InputError when the rasters do not fit each other or hold no valid place for the strip.
 SimulatedPair simulateFromOrtho(const OrthoField& field, const SimulationOptions& options);
 

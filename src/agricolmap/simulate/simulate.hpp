@@ -3,15 +3,17 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/simulate/field_model.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 
 namespace agricolmap {
 
-struct SimulatedPair {
-  Cloud uav;  ///< metrically right but for its own noise and dome
+/// The robot's cloud and where it belongs.
+struct SimulatedStrip {
   Cloud ugv;
   /// Per UGV point, where it lies in the UAV file's coordinates [m]: the recorded point, sensor
   /// noise included, without drift and without the errors of scale, level and geotag.
@@ -22,8 +24,40 @@ struct SimulatedPair {
   Eigen::Vector3d strip_centre = Eigen::Vector3d::Zero();  ///< UAV file coordinates [m]
   double strip_heading = 0.0;  ///< direction of travel in the UAV file [rad]
   double row_heading = 0.0;    ///< direction of the UAV field's rows [rad]
-  /// False when the strip was taken from another field; `truth` is then where it would have lain.
+  /// False when the map does not show what the strip does (SimulationOptions::other_field,
+  /// beyond_map, mirrored); `truth` is then where it would have lain.
   bool overlaps = true;
+};
+
+struct SimulatedPair : SimulatedStrip {
+  Cloud uav;  ///< metrically right but for its own noise and dome
+};
+
+/// Whether the drone's clouds of these options show the same field by the same sensor: all that
+/// belongs to a strip or to a visit may differ.
+bool sameField(const SimulationOptions& a, const SimulationOptions& b);
+
+/// A field as the drone saw it, made once, and any number of strips of it: making the drone's view
+/// takes most of the time of a pair.
+class SimulatedField {
+ public:
+  /// Throws UsageError as simulatePair does.
+  explicit SimulatedField(const SimulationOptions& options);
+
+  const Cloud& uav() const { return uav_; }
+  Cloud takeUav() && { return std::move(uav_); }
+
+  /// Strip number `index` of the field, with its own place, drive, sensor noise and guess. Of
+  /// `options`, the field, the drone and the seed must be those of the field (sameField);
+  /// everything else may be the strip's own. The flight stays as it was: its sun, its wind and the
+  /// share of leaves that it drew for itself are the field's. Strip 0 of the field's own options is
+  /// that of simulatePair.
+  SimulatedStrip strip(const SimulationOptions& options, int index = 0) const;
+
+ private:
+  SimulationOptions options_;
+  FieldModel field_;
+  Cloud uav_;
 };
 
 /// Equal options give equal bits on any number of threads. Throws UsageError when an option is

@@ -8,9 +8,6 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/simulate/drift.hpp"
-#include "agricolmap/simulate/light.hpp"
-#include "agricolmap/simulate/noise.hpp"
 
 namespace agricolmap {
 namespace {
@@ -79,8 +76,7 @@ StripMap mapFromGround(const SimulatedPair& pair, const SimulationOptions& optio
 }
 
 /// Correlation of the two views' ExG over the cells that both fill, coarse part removed.
-double correlation(const SimulationOptions& options) {
-  const SimulatedPair pair = simulatePair(options);
+double correlation(const SimulatedPair& pair, const SimulationOptions& options) {
   const StripMap a = mapFromAbove(pair, options);
   const StripMap b = mapFromGround(pair, options);
   const auto highPassed = [](const StripMap& map) {
@@ -113,6 +109,10 @@ double correlation(const SimulationOptions& options) {
     sxy += u * v;
   }
   return (n * sxy - sx * sy) / std::sqrt((n * sxx - sx * sx) * (n * syy - sy * sy));
+}
+
+double correlation(const SimulationOptions& options) {
+  return correlation(simulatePair(options), options);
 }
 
 TEST(Simulate, PresetsAreWithinTheirLimitsAndDistinct) {
@@ -233,6 +233,95 @@ TEST(Simulate, OtherFieldIsMarkedAsNegative) {
   EXPECT_FALSE(simulatePair(options).overlaps);
 }
 
+TEST(Field, GivesThePairAndOtherStripsOfTheSameView) {
+  const SimulationOptions options = smallOptions();
+  const SimulatedPair pair = simulatePair(options);
+  const SimulatedField field(options);
+  EXPECT_EQ(field.uav().xyz, pair.uav.xyz);
+  EXPECT_EQ(field.uav().rgb, pair.uav.rgb);
+  const SimulatedStrip first = field.strip(options);
+  EXPECT_EQ(first.ugv.xyz, pair.ugv.xyz);
+  EXPECT_EQ(first.truth, pair.truth);
+  EXPECT_EQ(first.prior.matrix(), pair.prior.matrix());
+  const SimulatedStrip second = field.strip(options, 1);
+  EXPECT_GT((second.strip_centre - first.strip_centre).norm(), 0.01);
+  EXPECT_EQ(field.strip(options, 1).ugv.xyz, second.ugv.xyz);
+  EXPECT_NE(field.strip(options, 2).ugv.xyz, second.ugv.xyz);
+  // What is in the strip is what the drone saw there.
+  const auto likeness = [&](const SimulatedStrip& strip) {
+    return correlation({strip, field.uav()}, options);
+  };
+  EXPECT_GT(likeness(second), 0.5);
+}
+
+TEST(Field, StripsMayDifferInAllButTheField) {
+  SimulationOptions options = smallOptions();
+  const SimulatedField field(options);
+  options.views.growth = 1.4;
+  options.ugv.length = 4.0;
+  options.geotag.translation = 3.0;
+  EXPECT_NO_THROW(field.strip(options, 1));
+  options.field.gaps = 0.5;
+  EXPECT_THROW(field.strip(options, 1), UsageError);
+  options = smallOptions();
+  options.seed += 1;
+  EXPECT_THROW(field.strip(options, 1), UsageError);
+}
+
+TEST(Field, StripsWithoutARightPlaceLookLikeNothingInTheMap) {
+  SimulationOptions options = smallOptions();
+  const SimulatedField field(options);
+  const double right = correlation({field.strip(options), field.uav()}, options);
+  SimulationOptions beyond = options;
+  beyond.beyond_map = true;
+  SimulationOptions mirrored = options;
+  mirrored.mirrored = true;
+  for (const SimulationOptions& wrong : {beyond, mirrored}) {
+    const SimulatedStrip strip = field.strip(wrong);
+    EXPECT_FALSE(strip.overlaps);
+    EXPECT_LT(correlation({strip, field.uav()}, options), right - 0.3);
+    // It claims to lie where the right strip lies, at its height.
+    EXPECT_LT((strip.strip_centre - field.strip(options).strip_centre).norm(), 0.1);
+  }
+}
+
+TEST(Geotag, CanMissByRowsAndLoseItsUnit) {
+  SimulationOptions options = smallOptions();
+  options.geotag = {};
+  options.geotag.translation = options.geotag.heading_deg = options.geotag.scale = 0.0;
+  options.geotag.tilt_deg = options.geotag.z = 0.0;
+  const SimulatedField field(options);
+  const auto centreError = [](const SimulatedStrip& strip) {
+    return Eigen::Vector3d(strip.prior * (strip.nominal.inverse() * strip.strip_centre) -
+                           strip.strip_centre);
+  };
+  EXPECT_LT(centreError(field.strip(options)).norm(), 1e-6);
+  options.geotag.across_rows = 0.5;
+  const SimulatedStrip aside = field.strip(options);
+  const Eigen::Vector3d along(std::cos(aside.row_heading), std::sin(aside.row_heading), 0.0);
+  EXPECT_NEAR(centreError(aside).norm(), 0.5, 1e-6);
+  EXPECT_NEAR(centreError(aside).dot(along), 0.0, 1e-6);
+
+  options.geotag.across_rows = 0.0;
+  options.geotag.unknown_scale = 10.0;
+  double smallest = 1e9;
+  double largest = 0.0;
+  for (int index = 0; index < 8; ++index) {
+    const SimulatedStrip strip = field.strip(options, index);
+    const double factor = std::cbrt(strip.nominal.linear().determinant());
+    smallest = std::min(smallest, factor);
+    largest = std::max(largest, factor);
+    // The prior knows nothing of it, the truth does.
+    EXPECT_NEAR(strip.prior.linear().determinant(), 1.0, 1e-9);
+    // The diagonal of a box around 5 m x 1.6 m at some angle.
+    EXPECT_NEAR(factor * static_cast<double>(boundingBox(strip.ugv).extent().head<2>().norm()), 6.0,
+                1.0);
+  }
+  EXPECT_GE(smallest, 0.1);
+  EXPECT_LE(largest, 10.0);
+  EXPECT_GT(largest / smallest, 3.0);
+}
+
 TEST(Simulate, PlantsHideTheGroundBehindThem) {
   // Cells that the drone fills and the robot does not: many more with a low camera in a tall crop.
   const auto missing = [](double camera_height) {
@@ -286,62 +375,6 @@ TEST(Simulate, RefusesWhatCannotBe) {
   options = smallOptions();
   options.views.leaf_unshared = 1.5;
   EXPECT_THROW(simulatePair(options), UsageError);
-}
-
-TEST(Drift, IsAsLargeAsAskedForAndZeroInTheMiddle) {
-  const Drift drift(10.0, 0.005, 3);
-  EXPECT_LT(drift.at(5.0, 0.0).norm(), 1e-9);
-  double largest = 0.0;
-  for (double x = 0.0; x <= 10.0; x += 0.01) largest = std::max(largest, drift.at(x, 0.0).norm());
-  EXPECT_NEAR(largest, 0.05, 1e-4);
-  // Smooth: no step along the path.
-  for (double x = 0.0; x < 9.99; x += 0.01) {
-    EXPECT_LT((drift.at(x + 0.01, 1.0) - drift.at(x, 1.0)).norm(), 0.002);
-  }
-}
-
-TEST(Noise, TilesAgreeWithPointsAndHaveUnitDeviation) {
-  const NoiseTile tile(42, -3.0, 30.0, 5.0, 40.0);
-  double sum2 = 0.0;
-  int n = 0;
-  for (double x = -3.0; x <= 30.0; x += 0.37) {
-    for (double y = 5.0; y <= 40.0; y += 0.41) {
-      EXPECT_NEAR(tile(x, y), noiseAt(42, x, y), 1e-4F);
-      sum2 += static_cast<double>(tile(x, y) * tile(x, y));
-      ++n;
-    }
-  }
-  EXPECT_NEAR(std::sqrt(sum2 / n), 1.0, 0.2);
-}
-
-TEST(Light, SunMovesFromEastToWestAndCastsShadowsAway) {
-  EXPECT_GT(sunDirection(9.0).x(), 0.3);
-  EXPECT_LT(sunDirection(15.0).x(), -0.3);
-  EXPECT_LT(sunDirection(12.0).y(), 0.0);
-  // A wall north–south across a plane; the sun in the east shades its west side, whatever the
-  // canvas's heading.
-  for (const double heading : {0.0, 0.6, 1.5708, 2.5, 4.0}) {
-    Canvas canvas;
-    canvas.window = makeWindow({0.0, 0.0}, heading, 2.0, 2.0, 0.01);
-    canvas.cells = Raster<Cell>(200, 200);
-    canvas.ground = Raster<float>(200, 200);
-    const Eigen::Vector2d middle = canvas.window.field({1.0, 1.0});
-    const auto cellAt = [&](double east) -> Cell& {
-      const Eigen::Vector2d p = canvas.window.local(middle + Eigen::Vector2d(east, 0.0)) / 0.01;
-      return canvas.cells(static_cast<int>(p.y()), static_cast<int>(p.x()));
-    };
-    for (int r = 0; r < 200; ++r) {
-      for (int c = 0; c < 200; ++c) {
-        const Eigen::Vector2d p = canvas.window.field(0.01 * Eigen::Vector2d(c + 0.5, r + 0.5));
-        if (std::abs(p.x() - middle.x()) < 0.03) canvas.cells(r, c).z = 0.2F;
-      }
-    }
-    const Eigen::Vector3d sun = Eigen::Vector3d(1.0, 0.0, 1.0).normalized();
-    lightCanvas(canvas, sun, 0.2);
-    EXPECT_LT(cellAt(-0.10).light, 20) << heading;
-    EXPECT_GT(cellAt(0.10).light, 150) << heading;
-    EXPECT_GT(cellAt(-0.40).light, 150) << heading;
-  }
 }
 
 }  // namespace

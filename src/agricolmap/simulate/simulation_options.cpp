@@ -94,6 +94,10 @@ void describe(OptionTable& t, GeotagOptions& o) {
   t.number("scale", o.scale, 0.0, 0.9, "", "scale error per horizontal axis, random signs");
   t.number("z", o.z, 0.0, 100.0, "m", "vertical error, random sign");
   t.number("tilt_deg", o.tilt_deg, 0.0, 30.0, "deg", "roll and pitch error, random signs");
+  t.number("across_rows", o.across_rows, 0.0, 100.0, "m",
+           "further error at the centre, across the rows, random sign");
+  t.number("unknown_scale", o.unknown_scale, 1.0, 100.0, "",
+           "UGV file in an unknown unit: lengths divided by a factor from 1/this to this");
   t.flag("uniform", o.uniform, "errors uniform from zero to the values given");
   t.number("file_heading_deg", o.file_heading_deg, -360.0, 360.0, "deg",
            "heading of the UGV file's x axis, known to the prior");
@@ -112,6 +116,8 @@ void describe(OptionTable& t, SimulationOptions& o) {
   t.group("geotag", o.geotag);
   t.integer("seed", o.seed, 0, 2147483647, "", "what everything random follows from");
   t.flag("other_field", o.other_field, "take the strip from another field: nothing to find");
+  t.flag("beyond_map", o.beyond_map, "take the strip from beyond the UAV map: nothing to find");
+  t.flag("mirrored", o.mirrored, "swap the strip's left and right: nothing to find");
 }
 
 namespace {

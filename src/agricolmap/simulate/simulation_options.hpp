@@ -100,11 +100,15 @@ void describe(OptionTable& table, UgvOptions& options);
 
 /// Error of the initial guess, see SimulatedPair::prior.
 struct GeotagOptions {
-  double translation = 1.0;       ///< horizontal error at the strip's centre [m]
-  double heading_deg = 2.0;       ///< [°], random sign
-  double scale = 0.05;            ///< on the UGV file's x and y axes, signs independent
-  double z = 0.3;                 ///< vertical error [m], random sign
-  double tilt_deg = 0.5;          ///< roll and pitch error [°], random signs
+  double translation = 1.0;  ///< horizontal error at the strip's centre [m]
+  double heading_deg = 2.0;  ///< [°], random sign
+  double scale = 0.05;       ///< on the UGV file's x and y axes, signs independent
+  double z = 0.3;            ///< vertical error [m], random sign
+  double tilt_deg = 0.5;     ///< roll and pitch error [°], random signs
+  double across_rows = 0.0;  ///< further error at the centre, across the rows, random sign [m]
+  /// The UGV file's unit is unknown: all its lengths are divided by a factor between 1/this and
+  /// this, log-uniform, of which the prior knows nothing. 1: metres.
+  double unknown_scale = 1.0;
   bool uniform = false;           ///< magnitudes uniform from 0 to the values above
   double file_heading_deg = 0.0;  ///< true heading of the UGV file's x axis [°], known to the prior
   bool utm = true;                ///< UAV file in UTM coordinates, else from (0, 0, 0)
@@ -120,7 +124,10 @@ struct SimulationOptions {
   UgvOptions ugv;
   GeotagOptions geotag;
   int seed = 1;
+  // Strips that have no right place in the map:
   bool other_field = false;  ///< the strip comes from another field of the same settings
+  bool beyond_map = false;   ///< it comes from a part of the field that the map does not show
+  bool mirrored = false;     ///< its left is its right: the same rows, plants that lie nowhere
 };
 void describe(OptionTable& table, SimulationOptions& options);
 
