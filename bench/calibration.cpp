@@ -8,20 +8,20 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "verdict_features.hpp"
+#include "agricolmap/7_verdict/probability.hpp"
 
 namespace agricolmap::campaign {
 namespace {
 
-VerdictNumbers numbersOf(const PairRow& row) {
-  VerdictNumbers numbers;
-  numbers.uniqueness = row.uniqueness;
-  numbers.significance = row.significance;
-  numbers.blocks = row.blocks;
-  numbers.agreeing = std::round(row.agreement * row.blocks);
-  numbers.block_rms = row.block_rms;
-  numbers.overlap = row.overlap;
-  return numbers;
+VerdictFacts factsOf(const PairRow& row) {
+  return {.uniqueness = row.uniqueness,
+          .significance = row.significance,
+          .agreeing = std::round(row.agreement * row.blocks),
+          .blocks = row.blocks,
+          .expected_rms = row.expected_rms,
+          .local_rms = row.local_rms,
+          .height_deviation = row.height_deviation,
+          .overlap = row.overlap};
 }
 
 }  // namespace
@@ -32,10 +32,8 @@ CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string
   std::vector<double> right;
   for (const PairRow& row : rows) {
     if (!preset.empty() && row.preset != preset) continue;
-    const auto features = verdictFeatures(numbersOf(row));
-    const bool finite = std::all_of(features.begin(), features.end(),
-                                    [](double value) { return std::isfinite(value); });
-    if (!std::isfinite(row.errors.rms) || !finite) {
+    const auto features = verdictFeatures(factsOf(row));
+    if (!std::isfinite(row.errors.rms) || !std::isfinite(row.uniqueness)) {
       ++samples.without_answer;
       samples.solvable_without += row.negative ? 0 : 1;
       continue;

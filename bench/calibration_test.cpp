@@ -6,8 +6,7 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
-#include "pose_error.hpp"
-#include "verdict_features.hpp"
+#include "agricolmap/7_verdict/probability.hpp"
 
 namespace agricolmap::campaign {
 namespace {
@@ -135,60 +134,6 @@ TEST(Calibration, SplitsByFieldAndLeavesOutRowsWithoutAnswer) {
   EXPECT_NE(calibrationJson(made).find("\"log_uniqueness\""), std::string::npos);
   EXPECT_NE(reliabilityCsv(made).find("cross-validation,0.0,0.1,"), std::string::npos);
   EXPECT_NE(calibrationText(made).find("accept from"), std::string::npos);
-}
-
-TEST(Features, GrowWithWhatSpeaksForAnAnswer) {
-  VerdictNumbers weak{.uniqueness = 1.1,
-                      .significance = 5.0,
-                      .agreeing = 1.0,
-                      .blocks = 16.0,
-                      .block_rms = 0.05,
-                      .overlap = 0.5};
-  VerdictNumbers strong{.uniqueness = 5.0,
-                        .significance = 20.0,
-                        .agreeing = 14.0,
-                        .blocks = 16.0,
-                        .block_rms = 0.02,
-                        .overlap = 1.0};
-  const auto low = verdictFeatures(weak);
-  const auto high = verdictFeatures(strong);
-  for (std::size_t k = 0; k < kVerdictFeatures; ++k) {
-    // The offset of the blocks speaks against an answer.
-    EXPECT_EQ(high[k] > low[k], k != 4) << kVerdictFeatureNames[k];
-  }
-  weak.agreeing = 0.0;
-  weak.block_rms = std::nan("");
-  for (const double value : verdictFeatures(weak)) EXPECT_TRUE(std::isfinite(value));
-  weak.uniqueness = std::nan("");
-  EXPECT_TRUE(std::isnan(verdictFeatures(weak)[0]));
-}
-
-TEST(PoseError, FindsTheParametersAndWeighsThem) {
-  StatedUncertainty stated;
-  stated.centre = Eigen::Vector2d(4.0, -2.0);
-  stated.axes = Eigen::Rotation2Dd(0.4).toRotationMatrix();
-  Eigen::Matrix<double, 5, 1> deviations;
-  deviations << 0.01, 0.02, 0.001, 0.002, 0.004;
-  stated.covariance = deviations.cwiseAbs2().asDiagonal();
-  Eigen::Matrix<double, 5, 1> truth;
-  truth << 0.01, -0.04, 0.001, 0.0, 0.008;
-  std::vector<Eigen::Vector2d> estimated;
-  std::vector<Eigen::Vector2d> places;
-  for (int i = -5; i <= 5; ++i) {
-    for (int j = -1; j <= 1; ++j) {
-      const Eigen::Vector2d q = stated.axes * Eigen::Vector2d(i, j);
-      const Eigen::Vector2d u = stated.axes.col(0);
-      const Eigen::Vector2d v = stated.axes.col(1);
-      estimated.push_back(stated.centre + q);
-      places.push_back(estimated.back() - truth.head<2>() -
-                       truth(2) * Eigen::Vector2d(-q.y(), q.x()) - truth(3) * u * u.dot(q) -
-                       truth(4) * v * v.dot(q));
-    }
-  }
-  const PoseError error = poseError(estimated, places, stated);
-  EXPECT_LT((error.parameters - truth).norm(), 1e-12);
-  EXPECT_NEAR(error.mahalanobis2, 1.0 + 4.0 + 1.0 + 0.0 + 4.0, 1e-9);
-  EXPECT_NEAR(error.centre_mahalanobis2, 5.0, 1e-9);
 }
 
 }  // namespace

@@ -35,11 +35,14 @@ struct PairRow {
   double block_rms = std::numeric_limits<double>::quiet_NaN();     ///< of the agreeing ones [m]
   double attempts = std::numeric_limits<double>::quiet_NaN();      ///< searches until this answer
   double expected_rms = std::numeric_limits<double>::quiet_NaN();  ///< as the program expects [m]
-  double probability = std::numeric_limits<double>::quiet_NaN();   ///< of being right
+  double local_rms = std::numeric_limits<double>::quiet_NaN();  ///< that no affine undoes [m]
+  double height_deviation = std::numeric_limits<double>::quiet_NaN();  ///< as it states [m]
+  double probability = std::numeric_limits<double>::quiet_NaN();       ///< of being right
   /// Squared error of the five horizontal parameters over the covariance that the program states,
   /// and that of the strip's centre alone.
   double mahalanobis2 = std::numeric_limits<double>::quiet_NaN();
   double centre_mahalanobis2 = std::numeric_limits<double>::quiet_NaN();
+  double height_mahalanobis2 = std::numeric_limits<double>::quiet_NaN();  ///< of the mean height
   std::size_t fixed_points = 0;
   std::size_t moving_points = 0;
   int threads = 0;

@@ -7,6 +7,7 @@
 
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/evaluate/coverage.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
 namespace agricolmap::campaign {
@@ -33,6 +34,11 @@ void fillEvidence(const Registration& result, PairRow& row) {
   row.significance = result.evidence.significance;
   row.overlap = result.overlap;
   row.correlation = result.correlation;
+  if (result.uncertainty) {
+    row.expected_rms = result.uncertainty->expected_rms;
+    row.local_rms = result.uncertainty->local_rms;
+    row.height_deviation = result.uncertainty->height_deviation;
+  }
   row.blocks = static_cast<double>(result.evidence.blocks.size());
   double sum = 0.0;
   for (const BlockEvidence& block : result.evidence.blocks) {
@@ -95,6 +101,12 @@ PairRow registerPair(const CampaignPair& pair, const std::string& preset_name,
     row.accepted = result.verdict.status == Status::kAccepted;
     row.status = toString(result.verdict.status);
     fillEvidence(result, row);
+    row.probability = result.verdict.probability;
+    if (const auto coverage = coverageOf(result, *pair.fixed, pair.moving, pair.truth)) {
+      row.mahalanobis2 = coverage->pose_distance2;
+      row.centre_mahalanobis2 = coverage->shift_distance2;
+      row.height_mahalanobis2 = coverage->height_distance2;
+    }
     if (result.has_transform) {
       row.errors = evaluateTransform(result.fixed_from_moving, pair.truth, pair.moving);
       row.correct = pair.overlaps && row.errors.within({});

@@ -1,5 +1,5 @@
 // The probability that a registration is right, from its evidence: a logistic regression whose
-// coefficients `agricolmap_calibrate` finds on pairs with known truth.
+// weights `agricolmap_calibrate` finds on pairs with known truth (docs/campaign-suites.md).
 #pragma once
 
 #include <array>
@@ -7,24 +7,30 @@
 
 namespace agricolmap {
 
-/// What the probability rests on, as plain numbers.
+/// What the probability rests on, as plain numbers. NaN stands for what is not known, and counts
+/// as badly as it can.
 struct VerdictFacts {
   double uniqueness = 0.0;    ///< see Evidence
   double significance = 0.0;  ///< see Evidence
-  std::size_t agreeing = 0;   ///< blocks
-  std::size_t blocks = 0;
-  double expected_rms = 0.0;  ///< see PoseUncertainty [m]; infinite when it is not known
-  double local_rms = 0.0;     ///< see PoseUncertainty [m]; infinite when it is not known
+  double agreeing = 0.0;      ///< blocks
+  double blocks = 0.0;
+  double expected_rms = 0.0;      ///< see PoseUncertainty [m]
+  double local_rms = 0.0;         ///< see PoseUncertainty [m]
+  double height_deviation = 0.0;  ///< see PoseUncertainty [m]
+  double overlap = 0.0;           ///< share of the moving map that the fixed map sees
 };
 
-inline constexpr std::size_t kVerdictFeatures = 5;
+inline constexpr std::size_t kVerdictFeatures = 7;
 using VerdictFeatures = std::array<double, kVerdictFeatures>;
+inline constexpr std::array<const char*, kVerdictFeatures> kVerdictFeatureNames = {
+    "log_uniqueness",   "agreement_log_odds", "agreement_beyond_chance", "log_significance",
+    "log_plane_error",  "log_height_error",   "log_overlap"};
 
-/// 1, log uniqueness, log odds of a block agreeing, log significance, and log of the expected error
-/// over the limit of 5 cm; each within bounds, so that no single one decides alone.
+/// The facts on scales on which a logistic regression is at home; each within bounds, so that no
+/// single one decides alone.
 VerdictFeatures verdictFeatures(const VerdictFacts& facts);
 
-/// Within 5 cm RMS of the truth, 0…1.
+/// Of being within 5 cm RMS of the truth, 0…1.
 double rightProbability(const VerdictFacts& facts);
 
 }  // namespace agricolmap

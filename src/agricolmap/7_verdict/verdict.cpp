@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 
-#include "agricolmap/7_verdict/probability.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap {
@@ -136,15 +135,25 @@ std::vector<std::string> support(const Finding& finding, double probability) {
 
 }  // namespace
 
+VerdictFacts factsOf(const Finding& finding) {
+  const Evidence& evidence = finding.evidence;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::optional<PoseUncertainty>& uncertainty = finding.uncertainty;
+  return {.uniqueness = evidence.uniqueness,
+          .significance = evidence.significance,
+          .agreeing = static_cast<double>(evidence.agreeing),
+          .blocks = static_cast<double>(evidence.blocks.size()),
+          .expected_rms = uncertainty ? uncertainty->expected_rms : unknown,
+          .local_rms = uncertainty ? uncertainty->local_rms : unknown,
+          .height_deviation = uncertainty ? uncertainty->height_deviation : unknown,
+          .overlap = finding.overlap};
+}
+
 Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options) {
   std::vector<std::string> against = contradictions(finding, space, options);
   if (!against.empty()) return {Status::kRejected, std::move(against), 0.0};
   const Evidence& evidence = finding.evidence;
-  const double unknown = std::numeric_limits<double>::infinity();
-  double probability = rightProbability(
-      {evidence.uniqueness, evidence.significance, evidence.agreeing, evidence.blocks.size(),
-       finding.uncertainty ? finding.uncertainty->expected_rms : unknown,
-       finding.uncertainty ? finding.uncertainty->local_rms : unknown});
+  double probability = rightProbability(factsOf(finding));
   const auto rivals =
       std::count_if(finding.rivals.begin(), finding.rivals.end(), [&](double significance) {
         return significance >= options.rival * evidence.significance;

@@ -2,11 +2,13 @@
 // plain words.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/7_verdict/evidence.hpp"
+#include "agricolmap/7_verdict/probability.hpp"
 #include "agricolmap/7_verdict/uncertainty.hpp"
 #include "agricolmap/core/options.hpp"
 
@@ -41,6 +43,9 @@ struct Finding {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
   std::vector<double> rivals;  ///< significances of the other distinct placements
 };
+
+/// What the probability of a finding rests on.
+VerdictFacts factsOf(const Finding& finding);
 
 Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options);
 
