@@ -1,5 +1,7 @@
 // What the verdict's probability is fitted to: right and wrong answers of settings that neither the
 // reported figures nor the development use, drawn anew for each field and strip.
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "suites.hpp"
@@ -67,7 +69,8 @@ std::vector<CampaignCase> calibrateSuite(bool uniform) {
   std::vector<CampaignCase> cases;
   for (const auto& [name, crop] : namedCrops()) {
     const auto start = [&, crop = crop, name = name](const std::string& kind) {
-      CampaignCase made = cropCase("cal-" + kind + "-" + name, crop, kPaperGuess, uniform);
+      CampaignCase made =
+          cropCase(fmt::format("cal-{}-{}", kind, name), crop, kPaperGuess, uniform);
       made.ranges = calibrationRanges(made.options);
       made.strips_per_field = kStrips;
       return made;
