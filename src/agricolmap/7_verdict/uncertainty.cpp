@@ -11,12 +11,12 @@ namespace agricolmap {
 void describe(OptionTable& table, UncertaintyOptions& options) {
   table.number("inflation", options.inflation, 0.0, 1000.0, "",
                "factor on the deviations that the blocks' disagreement gives");
-  table.number("shift_floor", options.shift_floor, 0.0, 10.0, "m",
-               "deviation of the shift that is left when no block disagrees");
-  table.number("heading_floor", options.heading_floor, 0.0, 1.0, "rad",
-               "the same of the heading");
-  table.number("scale_floor", options.scale_floor, 0.0, 1.0, "", "the same of the scales");
-  table.number("height_floor", options.height_floor, 0.0, 10.0, "m", "the same of the height");
+  table.number("floor", options.floor, 0.0, 10.0, "m",
+               "displacement that is left when no block disagrees, because all err alike");
+  table.number("height_inflation", options.height_inflation, 0.0, 1000.0, "",
+               "factor on the deviation of the ground's heights");
+  table.number("height_floor", options.height_floor, 0.0, 10.0, "m",
+               "deviation of the height that is left without any");
 }
 
 namespace {
@@ -200,17 +200,15 @@ std::optional<PoseUncertainty> estimateUncertainty(const SignalMap& fixed, const
     offset2 += (result.jacobian(block.place) * fit).squaredNorm();
   }
   offset2 /= static_cast<double>(2 * blocks.size());
-  const double scale = options.inflation * options.inflation *
-                       (variance + offset2 * static_cast<double>(blocks.size()) / kParameters);
-  Parameters floor;
-  floor << options.shift_floor, options.shift_floor, options.heading_floor, options.scale_floor,
-      options.scale_floor;
+  const auto count = static_cast<double>(blocks.size());
+  const double scale =
+      options.inflation * options.inflation * (variance + offset2 * count / kParameters) +
+      options.floor * options.floor * count;
   result.covariance = scale * solver.solve(Square::Identity());
-  result.covariance.diagonal() += floor.cwiseAbs2();
   double trace = 0.0;
   for (const BlockShift& block : blocks) trace += result.at(block.place).trace();
   result.expected_rms = std::sqrt(trace / static_cast<double>(blocks.size()));
-  result.height_deviation = std::hypot(options.height_floor, 0.5 * height_residual);
+  result.height_deviation = std::hypot(options.height_floor, options.height_inflation * height_residual);
   return result;
 }
 

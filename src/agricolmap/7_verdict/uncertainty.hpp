@@ -13,15 +13,14 @@
 
 namespace agricolmap {
 
-/// Deviations that are left when the blocks agree to a hair, because all are wrong alike: what a
-/// camera low above the ground and one high above see of a leaf differs in place. All from
-/// calibration.
+/// All from calibration.
 struct UncertaintyOptions {
-  double inflation = 1.0;       ///< factor on deviations that the blocks' disagreement gives
-  double shift_floor = 0.004;   ///< [m]
-  double heading_floor = 3e-4;  ///< [rad]
-  double scale_floor = 0.003;   ///< relative
-  double height_floor = 0.01;   ///< [m]
+  double inflation = 1.0;  ///< factor on deviations that the blocks' disagreement gives
+  /// Displacement that is left when the blocks agree to a hair, because all are wrong alike: a
+  /// camera low above the ground and one high above see a leaf in different places [m].
+  double floor = 0.003;
+  double height_inflation = 1.2;  ///< factor on the deviation of the ground's heights
+  double height_floor = 0.01;     ///< deviation of the height that is left without any [m]
 };
 void describe(OptionTable& table, UncertaintyOptions& options);
 

@@ -20,7 +20,7 @@ struct CorrelationOptions {
   int max_blocks = 10;      ///< of the most textured ones
   double max_work = 500.0;  ///< limit of cells times correlations [10⁶], else coarser cells
   int peaks = 16;           ///< places looked at more closely, per coarse hypothesis
-  double min_inside = 0.4;  ///< least share of the blocks inside the fixed map
+  double min_inside = 0.3;  ///< least share of the blocks inside the fixed map
   int climbs = 64;          ///< placements of the lattice from which the score is climbed
   int candidates = 8;       ///< placements handed on
   double separation = 0.3;  ///< placements whose corners differ by less are one [m]

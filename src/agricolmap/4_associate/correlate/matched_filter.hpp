@@ -11,8 +11,8 @@
 namespace agricolmap {
 
 struct MatchedFilterOptions {
-  double floor = 0.1;          ///< added to the power spectrum, in units of its mean
-  double height_weight = 0.5;  ///< of the height channel; greenness has 1
+  double floor = 0.4;          ///< added to the power spectrum, in units of its mean
+  double height_weight = 1.0;  ///< of the height channel; greenness has 1
 };
 void describe(OptionTable& table, MatchedFilterOptions& options);
 
