@@ -23,6 +23,7 @@ struct Arguments {
   double ridge = 1.0;
   double margin = 0.5;
   int folds = 5;
+  bool plane = false;
 };
 
 /// The rows of all files, and where they come from.
@@ -46,8 +47,9 @@ void addSet(Calibration& calibration, const std::string& name,
 
 Calibration calibrate(const Arguments& arguments) {
   Calibration made;
+  const RightAbout about = arguments.plane ? RightAbout::kPlane : RightAbout::kAll;
   const CalibrationSamples samples =
-      samplesOf(readAll(arguments.inputs, "fitted to", made.origin), arguments.preset);
+      samplesOf(readAll(arguments.inputs, "fitted to", made.origin), arguments.preset, about);
   made.without_answer = samples.without_answer;
   made.solvable_without = samples.solvable_without;
   made.model = fitLogistic(samples.features, samples.right, arguments.ridge);
@@ -57,7 +59,7 @@ Calibration calibrate(const Arguments& arguments) {
   addSet(made, "cross-validation", unseen);
   if (!arguments.tests.empty()) {
     const CalibrationSamples test =
-        samplesOf(readAll(arguments.tests, "tested on", made.origin), arguments.preset);
+        samplesOf(readAll(arguments.tests, "tested on", made.origin), arguments.preset, about);
     addSet(made, "test", statementsOf(test, made.model));
   }
   return made;
@@ -79,6 +81,7 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(0.0, 20.0));
   app.add_option("--folds", arguments.folds, "Parts that the fields are split into [5]")
       ->check(CLI::Range(2, 100));
+  app.add_flag("--plane", arguments.plane, "Right means the horizontal RMS, without the heights");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -26,20 +26,23 @@ VerdictFacts factsOf(const PairRow& row) {
 
 }  // namespace
 
-CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string& preset) {
+CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string& preset,
+                             RightAbout about) {
   CalibrationSamples samples;
   std::vector<std::array<double, kVerdictFeatures>> found;
   std::vector<double> right;
   for (const PairRow& row : rows) {
     if (!preset.empty() && row.preset != preset) continue;
-    const auto features = verdictFeatures(factsOf(row));
+    VerdictFeatures features = verdictFeatures(factsOf(row));
+    if (about == RightAbout::kPlane) features[kHeightFeature] = 0.0;
     if (!std::isfinite(row.errors.rms) || !std::isfinite(row.uniqueness)) {
       ++samples.without_answer;
       samples.solvable_without += row.negative ? 0 : 1;
       continue;
     }
     found.push_back(features);
-    right.push_back(!row.negative && row.errors.rms <= kRightRms ? 1.0 : 0.0);
+    const double rms = about == RightAbout::kPlane ? row.errors.rms_horizontal : row.errors.rms;
+    right.push_back(!row.negative && rms <= kRightRms ? 1.0 : 0.0);
     samples.field.push_back(row.field);
     samples.cases.push_back(row.case_name);
   }

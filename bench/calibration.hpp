@@ -23,8 +23,13 @@ struct CalibrationSamples {
 /// Right means RMS displacement of the points within this [m].
 inline constexpr double kRightRms = 0.05;
 
+/// What is to be right: the whole displacement, or its horizontal part, on which heights say
+/// nothing.
+enum class RightAbout { kAll, kPlane };
+
 /// The answers among the rows; `preset` empty: of all presets.
-CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string& preset);
+CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string& preset,
+                             RightAbout about = RightAbout::kAll);
 
 /// What each answer is said to be by a model fitted to the other folds; a field is in one fold
 /// only, whatever its case.

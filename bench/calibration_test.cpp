@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "agricolmap/7_verdict/probability.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/7_verdict/probability.hpp"
 
 namespace agricolmap::campaign {
 namespace {

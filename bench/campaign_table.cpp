@@ -23,7 +23,8 @@ constexpr std::string_view kHeader =
     "case,seed,field,preset,negative,status,accepted,success,correct,rms_m,rms_horizontal_m,"
     "rms_vertical_m,worst_m,rms_to_best_affine_m,e_t_m,e_r_rad,e_s,uniqueness,agreement,"
     "significance,overlap,correlation,blocks,block_rms_m,attempts,expected_rms_m,local_rms_m,"
-    "height_deviation_m,probability,mahalanobis2,centre_mahalanobis2,height_mahalanobis2,fixed_points,moving_points,threads,simulate_s,total_s,stages,"
+    "height_deviation_m,probability,mahalanobis2,centre_mahalanobis2,height_mahalanobis2,fixed_"
+    "points,moving_points,threads,simulate_s,total_s,stages,"
     "note";
 constexpr std::size_t kColumns = 39;
 
@@ -38,11 +39,14 @@ constexpr std::array<ErrorField, 8> kErrorFields = {&RegistrationErrors::rms,
                                                     &RegistrationErrors::scale};
 using EvidenceField = double PairRow::*;
 constexpr std::array<EvidenceField, 15> kEvidenceFields = {
-    &PairRow::uniqueness,          &PairRow::agreement,          &PairRow::significance,
-    &PairRow::overlap,             &PairRow::correlation,        &PairRow::blocks,
-    &PairRow::block_rms,           &PairRow::attempts,           &PairRow::expected_rms,
-    &PairRow::local_rms,           &PairRow::height_deviation,   &PairRow::probability,
-    &PairRow::mahalanobis2,        &PairRow::centre_mahalanobis2, &PairRow::height_mahalanobis2};
+    &PairRow::uniqueness,         &PairRow::agreement,
+    &PairRow::significance,       &PairRow::overlap,
+    &PairRow::correlation,        &PairRow::blocks,
+    &PairRow::block_rms,          &PairRow::attempts,
+    &PairRow::expected_rms,       &PairRow::local_rms,
+    &PairRow::height_deviation,   &PairRow::probability,
+    &PairRow::mahalanobis2,       &PairRow::centre_mahalanobis2,
+    &PairRow::height_mahalanobis2};
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();

@@ -35,7 +35,7 @@ struct PairRow {
   double block_rms = std::numeric_limits<double>::quiet_NaN();     ///< of the agreeing ones [m]
   double attempts = std::numeric_limits<double>::quiet_NaN();      ///< searches until this answer
   double expected_rms = std::numeric_limits<double>::quiet_NaN();  ///< as the program expects [m]
-  double local_rms = std::numeric_limits<double>::quiet_NaN();  ///< that no affine undoes [m]
+  double local_rms = std::numeric_limits<double>::quiet_NaN();     ///< that no affine undoes [m]
   double height_deviation = std::numeric_limits<double>::quiet_NaN();  ///< as it states [m]
   double probability = std::numeric_limits<double>::quiet_NaN();       ///< of being right
   /// Squared error of the five horizontal parameters over the covariance that the program states,

@@ -79,6 +79,70 @@ TEST(Pipeline, RejectsTheStripOfAnotherField) {
   EXPECT_EQ(registerPair(smallPair(10, /*other_field=*/true)).verdict.status, Status::kRejected);
 }
 
+TEST(Pipeline, FindsTheStripWithoutAGuess) {
+  const SimulatedPair pair = smallPair(11);
+  RegistrationOptions options = preset("default");
+  options.prior = PriorUncertainty::none();
+  StageTimes times;
+  // Half way round, and kilometres off.
+  const Eigen::Affine3d guess = Eigen::Translation3d(3000.0, -1000.0, 50.0) * pair.prior *
+                                Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitZ());
+  const Registration result = registerClouds(pair.uav, pair.ugv, guess, options, times);
+  ASSERT_EQ(result.verdict.status, Status::kAccepted);
+  EXPECT_LT(
+      evaluateTransform(result.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv).rms,
+      0.05);
+}
+
+TEST(Pipeline, TwoEqualFieldsAreAmbiguous) {
+  SimulatedPair pair = smallPair(12);
+  Cloud& field = pair.uav;
+  const std::size_t count = field.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    field.xyz.push_back(field.xyz[i] + Eigen::Vector3f(15.0F, 0.0F, 0.0F));
+    field.rgb.push_back(field.rgb[i]);
+  }
+  RegistrationOptions options = preset("default");
+  options.prior.translation = kAnywhere;
+  StageTimes times;
+  const Registration result = registerClouds(field, pair.ugv, pair.prior, options, times);
+  ASSERT_EQ(result.verdict.status, Status::kAmbiguous);
+  EXPECT_LE(result.verdict.probability, 0.5);
+  ASSERT_EQ(result.alternatives.size(), 1U);
+  // One of the two places is the truth, and the other lies 15 m beside it.
+  const Truth truth{pair.best_affine, pair.truth};
+  const double here = evaluateTransform(result.fixed_from_moving, truth, pair.ugv).rms;
+  const double there =
+      evaluateTransform(result.alternatives[0].fixed_from_moving, truth, pair.ugv).rms;
+  EXPECT_LT(std::min(here, there), 0.06);
+  EXPECT_NEAR(std::max(here, there), 15.0, 0.1);
+}
+
+TEST(Pipeline, FindsAnUnknownScale) {
+  SimulatedPair pair = smallPair(13);
+  constexpr float kUnit = 0.4F;  // as a map from a single camera has it
+  pair.ugv.origin *= static_cast<double>(kUnit);
+  for (Eigen::Vector3f& p : pair.ugv.xyz) p *= kUnit;
+  RegistrationOptions options = preset("default");
+  options.prior = PriorUncertainty::none();
+  options.prior.scale_unknown = true;
+  StageTimes times;
+  const Registration result = registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+  ASSERT_EQ(result.verdict.status, Status::kAccepted);
+  const Truth truth{Eigen::Affine3d::Identity(), pair.truth};
+  EXPECT_LT(evaluateTransform(result.fixed_from_moving, truth, pair.ugv).rms, 0.05);
+  EXPECT_NEAR(result.parts.scale_x, 1.0 / static_cast<double>(kUnit), 0.2);
+  EXPECT_NEAR(result.vertical_scale, 1.0 / static_cast<double>(kUnit), 0.2);
+}
+
+TEST(Pipeline, TheFlowCannotSearchEverywhere) {
+  const SimulatedPair pair = smallPair(7);
+  RegistrationOptions options = preset("paper");
+  options.prior.scale_unknown = true;
+  StageTimes times;
+  EXPECT_THROW(registerClouds(pair.uav, pair.ugv, pair.prior, options, times), UsageError);
+}
+
 TEST(Pipeline, RefusesOptionsOutsideTheirLimits) {
   const SimulatedPair pair = smallPair(7);
   RegistrationOptions options = preset("default");

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 done, registration accepted; 1 internal error; 2 bad usage; 3 bad input;\n"
-    "4 output cannot be written; 10 registration rejected; 130 interrupted.\n"
+    "4 output cannot be written; 10 registration rejected; 11 ambiguous; 130 interrupted.\n"
     "Lengths are metres, clouds are PLY or PCD, transforms map MOVING to FIXED file coordinates.";
 
 void requireCpu() {

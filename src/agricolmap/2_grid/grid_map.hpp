@@ -22,6 +22,8 @@ struct GridOptions {
   double cell = 0.02;   ///< s (Tab. III) [m]
   double sigma = 0.04;  ///< σ_avg (Tab. III) [m]
   ExgKind exg = ExgKind::kChromatic;
+  /// Larger cells, and σ with them, where a cloud has fewer points than cells.
+  bool coarsen = true;
 };
 void describe(OptionTable& table, GridOptions& options);
 
@@ -46,6 +48,13 @@ struct GridMap {
 
 /// Horizontal window of the levelled frame [m].
 using Box2 = Eigen::AlignedBox2d;
+
+/// Mean distance between neighbouring points, seen from above [m]: the root of the area that holds
+/// points over their number.
+double pointSpacing(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
+
+/// The options for clouds with points this far apart [m]: as they are, or, if they may be, coarser.
+GridOptions coarsened(const GridOptions& options, double spacing);
 
 /// Grids the points of `cloud` that lie in `window` after `levelled_from_local`. Cell borders lie
 /// on multiples of the cell size, so maps of one frame share their lattice. Throws InputError when

@@ -76,5 +76,40 @@ TEST(GridMap, IsTheSameOnOneThread) {
   EXPECT_TRUE(std::equal(many.nearest.begin(), many.nearest.end(), one.nearest.begin()));
 }
 
+TEST(GridMap, CroppedIsTheSameInItsWindow) {
+  const GridMap map =
+      makeGridMap(randomCloud(50000), Eigen::Affine3d::Identity(), box(0, 0, 3, 2), {});
+  const GridMap part = croppedMap(map, box(0.71, 0.5, 1.3, 5.0));
+  ASSERT_GT(part.frame.rows, 70);
+  ASSERT_LT(part.frame.cols, 35);
+  for (int r = 0; r < part.frame.rows; ++r) {
+    for (int c = 0; c < part.frame.cols; ++c) {
+      const Eigen::Vector2d there = map.frame.cellOf(part.frame.centre(r, c));
+      const int row = static_cast<int>(std::lround(there.y()));
+      const int col = static_cast<int>(std::lround(there.x()));
+      ASSERT_EQ(part.height(r, c), map.height(row, col));
+      ASSERT_EQ(part.nearest(r, c), map.nearest(row, col));
+    }
+  }
+  EXPECT_EQ(croppedMap(map, box(10, 10, 11, 11)).weight.size(), 0U);
+}
+
+TEST(GridMap, CellsFollowTheSpacingOfThePoints) {
+  Cloud cloud;
+  for (int i = 0; i < 200; ++i) {
+    for (int j = 0; j < 200; ++j) {
+      cloud.xyz.emplace_back(0.05F * static_cast<float>(i), 0.05F * static_cast<float>(j), 0.0F);
+    }
+  }
+  const double spacing = pointSpacing(cloud, Eigen::Affine3d::Identity());
+  EXPECT_NEAR(spacing, 0.05, 0.003);
+  const GridOptions coarse = coarsened({}, spacing);
+  EXPECT_NEAR(coarse.cell, 0.035, 0.003);
+  EXPECT_NEAR(coarse.sigma, 2.0 * coarse.cell, 1e-12);
+  EXPECT_EQ(coarsened({}, 0.01).cell, GridOptions{}.cell);
+  EXPECT_EQ(coarsened({.coarsen = false}, spacing).cell, GridOptions{}.cell);
+  EXPECT_EQ(pointSpacing({}, Eigen::Affine3d::Identity()), 0.0);
+}
+
 }  // namespace
 }  // namespace agricolmap

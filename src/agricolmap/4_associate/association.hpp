@@ -23,9 +23,9 @@ struct PriorUncertainty {
   static PriorUncertainty none();
   bool anywhere() const { return translation >= kAnywhere; }
 
-  double translation = 5.0;   ///< horizontal, at the moving map's centre [m]
-  double heading_deg = 11.5;  ///< [°]
-  double scale = 0.30;        ///< of each horizontal axis, relative (0.30: 0.7–1.3)
+  double translation = 5.0;    ///< horizontal, at the moving map's centre [m]
+  double heading_deg = 11.5;   ///< [°]
+  double scale = 0.30;         ///< of each horizontal axis, relative (0.30: 0.7–1.3)
   bool scale_unknown = false;  ///< and of all three axes together, by a factor from 0.1 to 10
 };
 void describe(OptionTable& table, PriorUncertainty& options);

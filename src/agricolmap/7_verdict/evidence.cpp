@@ -220,8 +220,7 @@ Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const SearchSpace& 
   if (deviation > 0.0) {
     evidence.significance = peak.value / deviation;
     // Next to nothing else in reach: compared with one deviation, what chance gives anywhere.
-    evidence.uniqueness =
-        evidence.significance / std::max({other.value / deviation, rival, 1.0});
+    evidence.uniqueness = evidence.significance / std::max({other.value / deviation, rival, 1.0});
   }
   evidence.block_side = blockSide(strip_, options_);
   const std::vector<Block> blocks = cutBlocks(moving_, strip_, evidence.block_side);

@@ -11,9 +11,21 @@ constexpr double kLimit = 0.05;
 /// Share of blocks that agree by chance: a circle of 8 cm in one of half a metre.
 constexpr double kChanceAgreement = 0.026;
 
-// As `agricolmap_calibrate` printed them.
-constexpr double kIntercept = -12.0;
-constexpr VerdictFeatures kWeights = {6.0, 1.0, 0.0, 4.0, -1.0, 0.0, 0.0};
+/// A fitted model.
+struct Model {
+  double intercept;
+  VerdictFeatures weights;
+};
+// As agricolmap_calibrate printed them (docs/results/locating/calibration*/calibration.json).
+constexpr Model kAll = {-15.0271, {2.6810, 0.6885, -1.2729, 3.7897, -2.1902, -5.7947, 2.3586}};
+constexpr Model kPlane = {-11.4560, {3.4369, 0.6206, -0.7847, 3.9989, -2.3763, 0.0000, -0.0150}};
+
+double probabilityOf(const VerdictFacts& facts, const Model& model) {
+  const VerdictFeatures features = verdictFeatures(facts);
+  double log_odds = model.intercept;
+  for (std::size_t i = 0; i < features.size(); ++i) log_odds += model.weights[i] * features[i];
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
 
 /// Logarithm of a value between its limits; the worse one for NaN.
 double logWithin(double value, double low, double high, double unknown) {
@@ -23,8 +35,9 @@ double logWithin(double value, double low, double high, double unknown) {
 }  // namespace
 
 VerdictFeatures verdictFeatures(const VerdictFacts& facts) {
-  const double n = std::max(1.0, facts.blocks);
-  const double k = std::clamp(facts.agreeing, 0.0, n);
+  // Comparisons that NaN fails.
+  const double n = facts.blocks >= 1.0 ? std::min(facts.blocks, 1e6) : 1.0;
+  const double k = facts.agreeing >= 0.0 ? std::min(facts.agreeing, n) : 0.0;
   // Twice the log-likelihood ratio of the agreeing blocks against chance, on the scale of a
   // deviation, its sign that of the excess.
   const double share = std::clamp(k / n, 1e-6, 1.0 - 1e-6);
@@ -41,11 +54,8 @@ VerdictFeatures verdictFeatures(const VerdictFacts& facts) {
           logWithin(facts.overlap, 0.05, 1.0, 0.05)};
 }
 
-double rightProbability(const VerdictFacts& facts) {
-  const VerdictFeatures features = verdictFeatures(facts);
-  double log_odds = kIntercept;
-  for (std::size_t i = 0; i < features.size(); ++i) log_odds += kWeights[i] * features[i];
-  return 1.0 / (1.0 + std::exp(-log_odds));
-}
+double rightProbability(const VerdictFacts& facts) { return probabilityOf(facts, kAll); }
+
+double planeProbability(const VerdictFacts& facts) { return probabilityOf(facts, kPlane); }
 
 }  // namespace agricolmap

@@ -23,8 +23,12 @@ struct VerdictFacts {
 inline constexpr std::size_t kVerdictFeatures = 7;
 using VerdictFeatures = std::array<double, kVerdictFeatures>;
 inline constexpr std::array<const char*, kVerdictFeatures> kVerdictFeatureNames = {
-    "log_uniqueness",   "agreement_log_odds", "agreement_beyond_chance", "log_significance",
-    "log_plane_error",  "log_height_error",   "log_overlap"};
+    "log_uniqueness",   "agreement_log_odds", "agreement_beyond_chance",
+    "log_significance", "log_plane_error",    "log_height_error",
+    "log_overlap"};
+
+/// Of the features, the one that the plane has nothing to do with.
+inline constexpr std::size_t kHeightFeature = 5;
 
 /// The facts on scales on which a logistic regression is at home; each within bounds, so that no
 /// single one decides alone.
@@ -32,5 +36,7 @@ VerdictFeatures verdictFeatures(const VerdictFacts& facts);
 
 /// Of being within 5 cm RMS of the truth, 0…1.
 double rightProbability(const VerdictFacts& facts);
+/// Of its horizontal part being so: the right row and the right plant, whatever the height.
+double planeProbability(const VerdictFacts& facts);
 
 }  // namespace agricolmap

@@ -21,9 +21,9 @@ void describe(OptionTable& table, UncertaintyOptions& options) {
 
 namespace {
 
-constexpr int kSteps = 5;             // Gauss-Newton steps per block
-constexpr double kMostMove = 2.5;     // cells; a block that goes further has lost its place
-constexpr double kRobust = 2.0;       // deviations, as in the dense refinement (Cauchy)
+constexpr int kSteps = 5;          // Gauss-Newton steps per block
+constexpr double kMostMove = 2.5;  // cells; a block that goes further has lost its place
+constexpr double kRobust = 2.0;    // deviations, as in the dense refinement (Cauchy)
 constexpr std::size_t kLeastCells = 40;
 constexpr std::size_t kLeastBlocks = 4;
 constexpr int kParameters = 5;
@@ -208,7 +208,8 @@ std::optional<PoseUncertainty> estimateUncertainty(const SignalMap& fixed, const
   double trace = 0.0;
   for (const BlockShift& block : blocks) trace += result.at(block.place).trace();
   result.expected_rms = std::sqrt(trace / static_cast<double>(blocks.size()));
-  result.height_deviation = std::hypot(options.height_floor, options.height_inflation * height_residual);
+  result.height_deviation =
+      std::hypot(options.height_floor, options.height_inflation * height_residual);
   return result;
 }
 

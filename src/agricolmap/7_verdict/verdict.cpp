@@ -25,7 +25,7 @@ const char* toString(Status status) {
 
 void describe(OptionTable& table, VerdictOptions& options) {
   table.number("min_probability", options.min_probability, 0.0, 1.0, "",
-               "least probability of being within 5 cm RMS of the truth");
+               "least probability of being within 5 cm RMS of the truth in the plane");
   table.number("min_uniqueness", options.min_uniqueness, 0.0, 100.0, "",
                "least ratio of the peak to the highest other one, whatever else speaks for it");
   table.number("rival", options.rival, 0.0, 1.0, "",
@@ -40,7 +40,9 @@ void describe(OptionTable& table, VerdictOptions& options) {
                "how far beyond the prior's limit the heading may come out");
 }
 
-Verdict rejectBecause(std::string reason) { return {Status::kRejected, {std::move(reason)}, 0.0}; }
+Verdict rejectBecause(std::string reason) {
+  return {Status::kRejected, {std::move(reason)}, 0.0, 0.0};
+}
 
 namespace {
 
@@ -102,33 +104,35 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
   }
   const double error = expectedError(finding);
   if (!(error < kLargeError)) {
-    against.push_back(std::isfinite(error)
-                          ? fmt::format("the blocks of the strip disagree with it by {:.1f} cm RMS",
-                                        100 * error)
-                          : std::string("too few blocks of the strip can be compared"));
+    against.push_back(
+        std::isfinite(error)
+            ? fmt::format("the blocks of the strip disagree with it by {:.1f} cm RMS", 100 * error)
+            : std::string("too few blocks of the strip can be compared"));
   }
   if (probability < options.min_probability) {
     against.push_back(
-        fmt::format("the probability of being within 5 cm of the truth is {:.1f} % (at "
+        fmt::format("the probability of the right place (within 5 cm in the plane) is {:.1f} % (at "
                     "least {:.0f} % needed)",
                     100 * probability, 100 * options.min_probability));
   }
   return against;
 }
 
-std::vector<std::string> support(const Finding& finding, double probability) {
+std::vector<std::string> support(const Finding& finding, double plane, double all) {
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> reasons = {
       fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness),
       fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
                   evidence.blocks.size()),
-      fmt::format("the probability of being within 5 cm of the truth is {:.1f} %",
-                  100 * probability)};
+      fmt::format("the probability of the right place (within 5 cm in the plane) is {:.1f} %, "
+                  "heights included {:.1f} %",
+                  100 * plane, 100 * all)};
   if (finding.uncertainty) {
-    reasons.push_back(
-        fmt::format("expected error {:.1f} cm RMS over the strip; {:.1f} cm of local deformation "
-                    "remain that no affine undoes",
-                    100 * finding.uncertainty->expected_rms, 100 * finding.uncertainty->local_rms));
+    reasons.push_back(fmt::format(
+        "expected error {:.1f} cm RMS in the plane and {:.1f} cm in height; {:.1f} cm "
+        "of local deformation remain that no affine undoes",
+        100 * finding.uncertainty->expected_rms, 100 * finding.uncertainty->height_deviation,
+        100 * finding.uncertainty->local_rms));
   }
   return reasons;
 }
@@ -151,26 +155,28 @@ VerdictFacts factsOf(const Finding& finding) {
 
 Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options) {
   std::vector<std::string> against = contradictions(finding, space, options);
-  if (!against.empty()) return {Status::kRejected, std::move(against), 0.0};
+  if (!against.empty()) return {Status::kRejected, std::move(against), 0.0, 0.0};
   const Evidence& evidence = finding.evidence;
-  double probability = rightProbability(factsOf(finding));
-  const auto rivals =
-      std::count_if(finding.rivals.begin(), finding.rivals.end(), [&](double significance) {
-        return significance >= options.rival * evidence.significance;
-      });
+  const VerdictFacts facts = factsOf(finding);
+  const double all = rightProbability(facts);
+  const double plane = planeProbability(facts);
+  const auto rivals = std::count_if(
+      finding.rivals.begin(), finding.rivals.end(),
+      [&](double significance) { return significance >= options.rival * evidence.significance; });
   if (rivals > 0 && evidence.significance >= options.min_fit) {
     // Right at most as often as the best of so many equals is the true one.
-    probability = std::min(probability, 1.0 / (1.0 + static_cast<double>(rivals)));
+    const double most = 1.0 / (1.0 + static_cast<double>(rivals));
     return {Status::kAmbiguous,
             {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
                          "a better initial guess (--prior, --prior-sigma) can",
                          rivals + 1)},
-            probability};
+            std::min(all, most),
+            std::min(plane, most)};
   }
-  if (probability < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
-    return {Status::kRejected, doubts(finding, probability, options), probability};
+  if (plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
+    return {Status::kRejected, doubts(finding, plane, options), all, plane};
   }
-  return {Status::kAccepted, support(finding, probability), probability};
+  return {Status::kAccepted, support(finding, plane, all), all, plane};
 }
 
 }  // namespace agricolmap

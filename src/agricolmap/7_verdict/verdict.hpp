@@ -19,8 +19,8 @@ enum class Status { kAccepted, kRejected, kAmbiguous };
 const char* toString(Status status);
 
 struct VerdictOptions {
-  double min_probability = 0.9;  ///< that the registration is within 5 cm RMS of the truth
-  double min_uniqueness = 1.5;   ///< least ratio of the peak to the next one, whatever else speaks
+  double min_probability = 0.8;  ///< that the registration is right in the plane
+  double min_uniqueness = 1.2;   ///< least ratio of the peak to the next one, whatever else speaks
   double rival = 0.8;            ///< placements of this share of the best significance are rivals
   double min_fit = 8.0;          ///< significance from which on rivals are more than chance
   double min_overlap = 0.25;
@@ -33,6 +33,7 @@ struct Verdict {
   Status status = Status::kRejected;
   std::vector<std::string> reasons;  ///< why, in plain words; never empty
   double probability = 0.0;          ///< calibrated, that the result is within 5 cm RMS
+  double plane_probability = 0.0;    ///< that it is so in the plane, whatever the height
 };
 
 /// What is judged.

@@ -38,8 +38,7 @@ std::optional<Coverage> coverageOf(const Registration& registration, const Cloud
   if (count < 5.0) return std::nullopt;
   Coverage coverage;
   coverage.error = normal.ldlt().solve(right);
-  coverage.pose_distance2 =
-      coverage.error.dot(uncertainty.covariance.ldlt().solve(coverage.error));
+  coverage.pose_distance2 = coverage.error.dot(uncertainty.covariance.ldlt().solve(coverage.error));
   const Eigen::Vector2d shift = coverage.error.head<2>();
   coverage.shift_distance2 =
       shift.dot(uncertainty.covariance.topLeftCorner<2, 2>().ldlt().solve(shift));

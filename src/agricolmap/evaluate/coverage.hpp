@@ -14,8 +14,9 @@ namespace agricolmap {
 struct Coverage {
   /// What the true best affine differs by from the found one: the parameters of PoseUncertainty.
   Eigen::Matrix<double, 5, 1> error = Eigen::Matrix<double, 5, 1>::Zero();
-  double pose_distance2 = 0.0;   ///< squared Mahalanobis distance, χ² of 5 if the covariance is right
-  double shift_distance2 = 0.0;  ///< of the shift at the strip's centre alone: χ² of 2
+  double pose_distance2 =
+      0.0;  ///< squared Mahalanobis distance, χ² of 5 if the covariance is right
+  double shift_distance2 = 0.0;   ///< of the shift at the strip's centre alone: χ² of 2
   double height_distance2 = 0.0;  ///< of the mean height: χ² of 1
 };
 

@@ -40,6 +40,7 @@ RegistrationOptions preset(const std::string& name) {
     options.association = AssociationKind::kFlow;
     options.refine = RefineKind::kCpd;
     options.grid.exg = ExgKind::kPlain;
+    options.grid.coarsen = false;
     // One flow from the guess as it is does not reach the 30 % and 11.5° that the paper reports
     // (docs/results.md); one flow per part of that range does.
     options.flow.warps = name == "paper";

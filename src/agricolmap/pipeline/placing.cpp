@@ -13,10 +13,11 @@ namespace {
 struct Attempt {
   double cell;  ///< of the options' cell
   int climbs;   ///< times the options' climbs
+  double work;  ///< times the options' limit
   bool rows_on_rows;
 };
 constexpr std::array<Attempt, 3> kAttempts = {
-    {{1.0, 1, true}, {2.0 / 3.0, 3, true}, {1.0, 2, false}}};
+    {{1.0, 1, 1.0, true}, {2.0 / 3.0, 3, 4.0, true}, {1.0, 2, 4.0, false}}};
 
 std::unique_ptr<Association> makeAssociation(const RegistrationOptions& options) {
   if (options.association == AssociationKind::kFlow) {
@@ -63,6 +64,7 @@ std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
   RegistrationOptions now = options_;
   now.search.cell *= attempt.cell;
   now.search.climbs *= attempt.climbs;
+  now.search.max_work *= attempt.work;
   now.search.rows_on_rows = options_.search.rows_on_rows && attempt.rows_on_rows;
   PairOutcome outcome;
   outcome.counts = {{"fixed_cells", static_cast<double>(fixed_.filled)},
@@ -117,9 +119,8 @@ void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome
   const Fit fit = refinement_.fit(outcome.pose);
   outcome.overlap = fit.overlap;
   outcome.correlation = fit.correlation;
-  outcome.vertical = times_.run("vertical", [&] {
-    return fitVertical(fixed_, moving_, outcome.pose, options_.vertical);
-  });
+  outcome.vertical = times_.run(
+      "vertical", [&] { return fitVertical(fixed_, moving_, outcome.pose, options_.vertical); });
   // 8. Verdict.
   times_.run("verdict", [&] {
     Finding finding = refinement_.examine(outcome.pose, refined, outcome.vertical.residual);

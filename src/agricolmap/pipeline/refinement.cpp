@@ -20,6 +20,9 @@ constexpr std::array<int, 2> kFinerFactors = {2, 1};
 constexpr int kUncertaintyFactor = 2;
 /// Finer cells must have at least this share of the coarser ones' overlap.
 constexpr double kLeastFinerOverlap = 0.5;
+/// How far around the strip the fixed map's vegetation takes part [m]: its outlines decide what is
+/// plant and what is soil, too.
+constexpr double kVegetationRim = 2.0;
 /// The point refinement has its say when it moves no corner by more than this [m] and keeps this
 /// share of the correlation.
 constexpr double kMostDifference = 0.08;
@@ -52,17 +55,21 @@ std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level,
   return RefinedPose{dense.fixed_from_moving, start.significance, dense.overlap};
 }
 
-PoseRefinement::Level PoseRefinement::levelUnder(const Eigen::Affine2d& pose, int factor) const {
+GridMap PoseRefinement::fixedUnder(const Eigen::Affine2d& pose, double rim) const {
   const GridFrame& frame = moving_.frame;
   Box2 window;
   for (const double row : {-0.5, frame.rows - 0.5}) {
     for (const double col : {-0.5, frame.cols - 0.5}) window.extend(pose * frame.centre(row, col));
   }
-  // Room for the high-pass, and for what a level may move the pose by.
-  const double rim = 1.5 * options_.signal.high_pass + 8.0 * factor * frame.cell;
   window.extend((window.min() - Eigen::Vector2d::Constant(rim)).eval());
   window.extend((window.max() + Eigen::Vector2d::Constant(rim)).eval());
-  return {makeSignalMap(croppedMap(fixed_, window), factor, options_.signal),
+  return croppedMap(fixed_, window);
+}
+
+PoseRefinement::Level PoseRefinement::levelUnder(const Eigen::Affine2d& pose, int factor) const {
+  // Room for the high-pass, and for what a level may move the pose by.
+  const double rim = 1.5 * options_.signal.high_pass + 8.0 * factor * moving_.frame.cell;
+  return {makeSignalMap(fixedUnder(pose, rim), factor, options_.signal),
           makeSignalMap(moving_, factor, options_.signal)};
 }
 
@@ -78,8 +85,8 @@ RefineOutcome PoseRefinement::rank(const std::vector<std::optional<RefinedPose>>
   std::vector<RefinedPose> distinct;
   for (const RefinedPose& pose : order) {
     // Placements that ran to one and the same place are no rivals.
-    const bool is_new = std::none_of(
-        distinct.begin(), distinct.end(), [&](const RefinedPose& other) {
+    const bool is_new =
+        std::none_of(distinct.begin(), distinct.end(), [&](const RefinedPose& other) {
           return meter_->distance(pose.pose, other.pose) <= options_.evidence.exclusion;
         });
     if (is_new) distinct.push_back(pose);
@@ -100,10 +107,9 @@ RefineOutcome PoseRefinement::refineDensely(
     if (poses[i]) poses[i]->significance = meter_->significance(poses[i]->pose);
   });
   RefineOutcome outcome = rank(poses);
-  counts.emplace_back("refined_placements",
-                      static_cast<double>(std::count_if(poses.begin(), poses.end(), [](const auto& p) {
-                        return p.has_value();
-                      })));
+  counts.emplace_back("refined_placements", static_cast<double>(std::count_if(
+                                                poses.begin(), poses.end(),
+                                                [](const auto& p) { return p.has_value(); })));
   // What the finest cells cannot follow (a map with fewer points than cells has hardly two seen
   // side by side) stays as the coarser ones left it; whether it is right is for the verdict to say.
   for (const int factor : kFinerFactors) {
@@ -123,7 +129,9 @@ RefineOutcome PoseRefinement::refineDensely(
 
 RefineOutcome PoseRefinement::refineByPoints(
     const RefinedPose& start, std::vector<std::pair<std::string, double>>& counts) const {
-  const Vegetation fixed = extractVegetation(fixed_, options_.vegetation);
+  // What lies far from the strip is of no use, and on a large map costs more than all the rest.
+  const GridMap around = fixedUnder(start.pose, kVegetationRim);
+  const Vegetation fixed = extractVegetation(around, options_.vegetation);
   const Vegetation moving = extractVegetation(moving_, options_.vegetation);
   for (const auto& [map, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
     if (map->points.empty()) {
@@ -204,9 +212,8 @@ Finding PoseRefinement::examine(const Eigen::Affine2d& pose, const RefineOutcome
   const double highest = finding.rivals.empty() ? 0.0 : finding.rivals.front();
   finding.evidence = meter_->measure(pose, space_, highest);
   const Level level = levelUnder(pose, kUncertaintyFactor);
-  finding.uncertainty =
-      estimateUncertainty(level.fixed, level.moving, pose, finding.evidence, space_,
-                          height_residual, options_.uncertainty);
+  finding.uncertainty = estimateUncertainty(level.fixed, level.moving, pose, finding.evidence,
+                                            space_, height_residual, options_.uncertainty);
   return finding;
 }
 

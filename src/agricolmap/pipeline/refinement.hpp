@@ -56,6 +56,8 @@ class PoseRefinement {
     SignalMap fixed;
     SignalMap moving;
   };
+  /// The fixed map where the pose puts the moving one, and `rim` more [m].
+  GridMap fixedUnder(const Eigen::Affine2d& pose, double rim) const;
   /// Both maps at `factor` grid cells, the fixed one only where the pose puts the moving one.
   Level levelUnder(const Eigen::Affine2d& pose, int factor) const;
   std::optional<RefinedPose> refineAt(const Level& level, const RefinedPose& start) const;

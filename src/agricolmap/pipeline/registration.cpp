@@ -83,8 +83,7 @@ class Registrar {
   /// of them found: with heights at the right scale, and cells of the right size.
   Registration runAtUnknownScale(const Eigen::Affine3d& guess) {
     prepare(guess);
-    const std::vector<double> factors =
-        scaleFactors(moving_box_, fixed_box_, options_.prior);
+    const std::vector<double> factors = scaleFactors(moving_box_, fixed_box_, options_.prior);
     std::optional<Found> best;
     for (const double factor : factors) {
       const Eigen::Affine3d scaled = scaledGuess(guess, factor);
@@ -101,8 +100,10 @@ class Registrar {
           moving_.name, fixed_.name));
     }
     result_.counts = best->outcome.counts;
-    if (best->outcome.has_transform) settleAt(*best, guess);
-    else static_cast<PairOutcome&>(result_) = std::move(best->outcome);
+    if (best->outcome.has_transform)
+      settleAt(*best, guess);
+    else
+      static_cast<PairOutcome&>(result_) = std::move(best->outcome);
     return finish();
   }
 
@@ -126,15 +127,25 @@ class Registrar {
       requirePlausibleExtents(fixed_, moving_, fixed_box_, moving_box_);
     }
     times_.run("grid", [&] {
+      chooseCells();
       // Room for the high-pass.
       const Box2 window =
           options_.prior.scale_unknown
               ? fixed_box_
               : reachableWindow(moving_box_, result_.space, 2.0 * options_.signal.high_pass);
       result_.fixed_map = makeGridMap(fixed_, result_.frames.levelled_from_fixed,
-                                      window.intersection(fixed_box_), options_.grid);
+                                      window.intersection(fixed_box_), grid_);
       if (!options_.prior.scale_unknown) gridMoving();
     });
+  }
+
+  /// Cells that both clouds fill.
+  void chooseCells() {
+    double spacing = pointSpacing(fixed_, result_.frames.levelled_from_fixed);
+    if (!options_.prior.scale_unknown) {
+      spacing = std::max(spacing, pointSpacing(moving_, result_.frames.levelled_from_moving));
+    }
+    grid_ = coarsened(options_.grid, spacing);
   }
 
   void levelAndBound(const Eigen::Affine3d& guess) {
@@ -147,7 +158,7 @@ class Registrar {
 
   void gridMoving() {
     result_.moving_map =
-        makeGridMap(moving_, result_.frames.levelled_from_moving, moving_box_, options_.grid);
+        makeGridMap(moving_, result_.frames.levelled_from_moving, moving_box_, grid_);
   }
 
   void prepareMoving(const Eigen::Affine3d& guess) {
@@ -175,8 +186,8 @@ class Registrar {
     const Eigen::Affine3d scaled = scaledGuess(guess, scale_);
     prepareMoving(scaled);
     // Levelled moving of now → levelled moving of then, in the plane.
-    const Eigen::Affine3d then_from_now = found.frames.levelled_from_moving *
-                                          result_.frames.levelled_from_moving.inverse();
+    const Eigen::Affine3d then_from_now =
+        found.frames.levelled_from_moving * result_.frames.levelled_from_moving.inverse();
     Eigen::Affine2d plane = Eigen::Affine2d::Identity();
     plane.linear() = then_from_now.linear().topLeftCorner<2, 2>();
     plane.translation() = then_from_now.translation().head<2>();
@@ -212,6 +223,7 @@ class Registrar {
   const RegistrationOptions& options_;
   StageTimes& times_;
   Registration result_;
+  GridOptions grid_;
   Box2 fixed_box_;
   Box2 moving_box_;
   double scale_ = 1.0;  ///< that the moving file was enlarged by

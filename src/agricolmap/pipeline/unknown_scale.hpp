@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/2_grid/grid_map.hpp"
+#include "agricolmap/4_associate/association.hpp"
 
 namespace agricolmap {
 

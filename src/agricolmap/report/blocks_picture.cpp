@@ -94,12 +94,13 @@ void drawBlock(PictureCanvas& canvas, const Scene& scene, const View& view,
 
 std::vector<std::pair<std::string, std::string>> figures(const Registration& result) {
   const Evidence& evidence = result.evidence;
-  return {{"blocks that agree", fmt::format("{} of {}", evidence.agreeing, evidence.blocks.size())},
-          {"uniqueness (peak / next peak)", fmt::format("{:.2f}", evidence.uniqueness)},
-          {"significance (peak / deviation)", fmt::format("{:.1f}", evidence.significance)},
-          {"probability of being right", fmt::format("{:.1f} %", 100.0 * result.verdict.probability)},
-          {"overlap", fmt::format("{:.0f} %", 100.0 * result.overlap)},
-          {"correlation", fmt::format("{:.2f}", result.correlation)}};
+  return {
+      {"blocks that agree", fmt::format("{} of {}", evidence.agreeing, evidence.blocks.size())},
+      {"uniqueness (peak / next peak)", fmt::format("{:.2f}", evidence.uniqueness)},
+      {"significance (peak / deviation)", fmt::format("{:.1f}", evidence.significance)},
+      {"probability of being right", fmt::format("{:.1f} %", 100.0 * result.verdict.probability)},
+      {"overlap", fmt::format("{:.0f} %", 100.0 * result.overlap)},
+      {"correlation", fmt::format("{:.2f}", result.correlation)}};
 }
 
 const char* headline(Status status) {

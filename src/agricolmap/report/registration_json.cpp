@@ -222,6 +222,7 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
   json["probability"] = number(registration.verdict.probability);
+  json["plane_probability"] = number(registration.verdict.plane_probability);
   json["transform"] = transformJson(fixed, moving, registration);
   json["uncertainty"] = uncertaintyJson(fixed, registration);
   json["alternatives"] = alternativesJson(registration);

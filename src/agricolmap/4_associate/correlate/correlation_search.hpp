@@ -18,7 +18,7 @@ struct CorrelationOptions {
   /// those of the other.
   bool rows_on_rows = true;
   int max_blocks = 10;      ///< of the most textured ones
-  double max_work = 500.0;  ///< limit of cells times correlations [10⁶], else coarser cells
+  double max_work = 150.0;  ///< limit of cells times correlations [10⁶], else coarser cells
   int peaks = 16;           ///< places looked at more closely, per coarse hypothesis
   double min_inside = 0.3;  ///< least share of the blocks inside the fixed map
   int climbs = 64;          ///< placements of the lattice from which the score is climbed
