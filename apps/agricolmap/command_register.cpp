@@ -46,7 +46,8 @@ void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const Opt
     prior.scale_unknown = scale_unknown;
     return;
   }
-  const std::vector<std::string> parts = CLI::detail::split(text, ',');
+  std::vector<std::string> parts = CLI::detail::split(text, ',');
+  for (std::string& part : parts) CLI::detail::trim(part);
   double scale = 0.0;
   if (parts.size() != 3 || !CLI::detail::lexical_cast(parts[2], scale)) {
     throw UsageError(fmt::format(

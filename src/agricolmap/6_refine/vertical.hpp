@@ -10,10 +10,10 @@
 namespace agricolmap {
 
 struct VerticalOptions {
-  double ground_window = 0.6;      ///< side of the window whose lowest cells are ground [m]
-  double ground_tolerance = 0.03;  ///< height above the ground at which a cell stops to be it [m]
-  double max_slope = 0.2;          ///< larger tilts between the levelled maps are refused
-  double robust = 2.5;             ///< residuals beyond this many deviations do not count (Tukey)
+  double ground_window = 0.6;       ///< side of the window whose lowest cells are ground [m]
+  double ground_tolerance = 0.015;  ///< height above the ground at which a cell stops to be it [m]
+  double max_slope = 0.2;           ///< larger tilts between the levelled maps are refused
+  double robust = 2.5;              ///< residuals beyond this many deviations do not count (Tukey)
 };
 void describe(OptionTable& table, VerticalOptions& options);
 

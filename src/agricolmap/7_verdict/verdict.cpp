@@ -51,6 +51,13 @@ constexpr double kWeakUniqueness = 1.8;
 constexpr double kWeakAgreement = 0.55;
 constexpr double kLargeError = 0.03;  // [m]
 
+/// A probability in words: nothing is certain.
+std::string percent(double probability) {
+  if (probability > 0.9995) return "> 99.9 %";
+  if (probability < 0.0005) return "< 0.1 %";
+  return fmt::format("{:.1f} %", 100.0 * probability);
+}
+
 /// What no evidence can outweigh.
 std::vector<std::string> contradictions(const Finding& finding, const SearchSpace& space,
                                         const VerdictOptions& options) {
@@ -111,9 +118,9 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
   }
   if (probability < options.min_probability) {
     against.push_back(
-        fmt::format("the probability of the right place (within 5 cm in the plane) is {:.1f} % (at "
+        fmt::format("the probability of the right place (within 5 cm in the plane) is {} (at "
                     "least {:.0f} % needed)",
-                    100 * probability, 100 * options.min_probability));
+                    percent(probability), 100 * options.min_probability));
   }
   return against;
 }
@@ -124,9 +131,9 @@ std::vector<std::string> support(const Finding& finding, double plane, double al
       fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness),
       fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
                   evidence.blocks.size()),
-      fmt::format("the probability of the right place (within 5 cm in the plane) is {:.1f} %, "
-                  "heights included {:.1f} %",
-                  100 * plane, 100 * all)};
+      fmt::format("the probability of the right place (within 5 cm in the plane) is {}, "
+                  "heights included {}",
+                  percent(plane), percent(all))};
   if (finding.uncertainty) {
     reasons.push_back(fmt::format(
         "expected error {:.1f} cm RMS in the plane and {:.1f} cm in height; {:.1f} cm "
