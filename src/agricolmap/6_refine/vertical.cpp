@@ -27,6 +27,10 @@ constexpr std::size_t kMinCells = 50;
 /// At least this share of the cells stands for the ground, however tall they are.
 constexpr double kMinGroundShare = 0.05;
 
+/// A robot that looks from the side takes canopy for ground more often than a drone does, and then
+/// the fixed map seems too low: differences on the other side fade later, by this factor.
+constexpr double kCanopyBelow = 0.6;
+
 /// A cell that both maps see.
 struct Pair {
   Eigen::Vector2d place;  ///< fixed frame [m], later relative to the middle
@@ -186,7 +190,8 @@ Eigen::Vector3d fitPlane(const std::vector<Pair>& pairs, const std::vector<doubl
     }
     deviation = std::max(1e-4, groundDeviation(residuals, ground));
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const double u = residuals[i] / (robust * deviation);
+      const double side = residuals[i] > 0.0 ? kCanopyBelow : 1.0;
+      const double u = side * residuals[i] / (robust * deviation);
       weights[i] = std::abs(u) < 1.0 ? ground[i] * (1 - u * u) * (1 - u * u) : 0.0;
     }
   }
