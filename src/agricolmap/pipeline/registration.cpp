@@ -84,11 +84,14 @@ class Registrar {
   Registration runAtUnknownScale(const Eigen::Affine3d& guess) {
     prepare(guess);
     const std::vector<double> factors = scaleFactors(moving_box_, fixed_box_, options_.prior);
+    // What the points would add is not worth their time at a dozen scales that are wrong.
+    RegistrationOptions trial = options_;
+    if (trial.refine == RefineKind::kDenseCpd) trial.refine = RefineKind::kDense;
     std::optional<Found> best;
     for (const double factor : factors) {
       const Eigen::Affine3d scaled = scaledGuess(guess, factor);
       prepareMoving(scaled);
-      std::optional<PairOutcome> next = placer().searchOnce(0, nullptr);
+      std::optional<PairOutcome> next = placer(trial).searchOnce(0, nullptr);
       if (!next || (best && !better(*next, best->outcome))) continue;
       best = Found{factor, scaled, result_.frames, *std::move(next)};
       if (best->outcome.verdict.status == Status::kAccepted) break;
@@ -166,8 +169,10 @@ class Registrar {
     times_.run("grid", [&] { gridMoving(); });
   }
 
-  PairPlacer placer() {
-    return {result_.fixed_map, result_.moving_map, result_.space, options_, times_};
+  PairPlacer placer() { return placer(options_); }
+  /// `options` must outlive it.
+  PairPlacer placer(const RegistrationOptions& options) {
+    return {result_.fixed_map, result_.moving_map, result_.space, options, times_};
   }
 
   /// The guess with the moving cloud made larger about its middle.
