@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "agricolmap/core/parabola.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
@@ -26,13 +27,6 @@ constexpr double kMinSeenShare = 0.3;  // of a block's area, in both maps
 /// smaller ones hold too little to be placed alone.
 constexpr double kFewestBlocks = 12.0;
 constexpr double kLeastBlock = 0.6;
-
-/// Vertex of the parabola through three values, in steps from the middle one.
-double vertex(float before, float here, float after) {
-  const float bend = before - 2.0F * here + after;
-  return bend < 0.0F ? std::clamp(static_cast<double>(0.5F * (before - after) / bend), -0.5, 0.5)
-                     : 0.0;
-}
 
 double surfaceDeviation(const ComplexRaster& surface) {
   double sum2 = 0.0;
@@ -181,10 +175,11 @@ BlockEvidence EvidenceMeter::placeBlock(const Block& block, const Eigen::Affine2
   Eigen::Vector2d peak(best_col - reach, best_row - reach);
   if (best_row > 0 && best_row + 1 < scores.rows() && best_col > 0 &&
       best_col + 1 < scores.cols()) {
-    peak.x() += vertex(scores(best_row, best_col - 1), scores(best_row, best_col),
-                       scores(best_row, best_col + 1));
-    peak.y() += vertex(scores(best_row - 1, best_col), scores(best_row, best_col),
-                       scores(best_row + 1, best_col));
+    const auto at_peak = [&](int dr, int dc) {
+      return static_cast<double>(scores(best_row + dr, best_col + dc));
+    };
+    peak.x() += parabolaVertex(at_peak(0, -1), at_peak(0, 0), at_peak(0, 1));
+    peak.y() += parabolaVertex(at_peak(-1, 0), at_peak(0, 0), at_peak(1, 0));
   }
   evidence.offset = cell * (peak + rounding);
   evidence.agrees = evidence.offset.norm() <= options_.agreement;

@@ -129,14 +129,14 @@ void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome
     outcome.evidence = std::move(finding.evidence);
     outcome.uncertainty = std::move(finding.uncertainty);
   });
+  if (outcome.vertical.status != VerticalStatus::kOk) {
+    outcome.verdict = rejectBecause("the heights of the two maps do not fit one another");
+  }
   if (outcome.verdict.status == Status::kAmbiguous) {
     for (const RefinedPose& rival : refined.rivals) {
       if (rival.significance < options_.verdict.rival * outcome.evidence.significance) break;
       outcome.alternatives.push_back({.pose = rival.pose, .significance = rival.significance});
     }
-  }
-  if (outcome.vertical.status != VerticalStatus::kOk) {
-    outcome.verdict = rejectBecause("the heights of the two maps do not fit one another");
   }
 }
 

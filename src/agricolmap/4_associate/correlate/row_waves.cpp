@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "agricolmap/4_associate/correlate/fft.hpp"
+#include "agricolmap/core/parabola.hpp"
 
 namespace agricolmap {
 namespace {
@@ -66,12 +67,6 @@ Spectrum spectrumOf(const SignalMap& map, const Raster<float>& value) {
   return spectrum;
 }
 
-/// Vertex of the parabola through three values, in steps from the middle one.
-double vertex(double before, double here, double after) {
-  const double bend = before - 2.0 * here + after;
-  return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
-}
-
 }  // namespace
 
 std::vector<Wave> strongestWaves(const GridMap& map, const SignalOptions& options, int most,
@@ -118,8 +113,9 @@ std::vector<Wave> strongestWaves(const GridMap& map, const SignalOptions& option
     wave.strength = peak.power * count[band] / std::max(1e-30, sum[band]);
     if (wave.strength < min_strength) continue;
     const auto offset = [&](int dr, int dc) {
-      return vertex(static_cast<double>(spectrum.at(peak.row - dr, peak.col - dc)), peak.power,
-                    static_cast<double>(spectrum.at(peak.row + dr, peak.col + dc)));
+      return parabolaVertex(static_cast<double>(spectrum.at(peak.row - dr, peak.col - dc)),
+                            peak.power,
+                            static_cast<double>(spectrum.at(peak.row + dr, peak.col + dc)));
     };
     wave.vector = at + Eigen::Vector2d(offset(0, 1) / (spectrum.cols * spectrum.cell),
                                        offset(1, 0) / (spectrum.rows * spectrum.cell));
