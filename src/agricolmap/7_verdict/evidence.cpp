@@ -83,11 +83,7 @@ EvidenceMeter::EvidenceMeter(const SignalMap& fixed, const SignalMap& moving,
 
 ComplexRaster EvidenceMeter::wholeSurface(const Eigen::Affine2d& pose, Eigen::Vector2d& at) const {
   Eigen::AlignedBox2d bounds;
-  for (const double u : {-1.0, 1.0}) {
-    for (const double v : {-1.0, 1.0}) {
-      bounds.extend(strip_.world({u * strip_.half_extent.x(), v * strip_.half_extent.y()}));
-    }
-  }
+  for (const Eigen::Vector2d& corner : strip_.corners()) bounds.extend(corner);
   const Template piece =
       makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
                    options_.filter.height_weight, [](const Eigen::Vector2d&) { return true; });
@@ -109,12 +105,8 @@ double EvidenceMeter::significance(const Eigen::Affine2d& pose) const {
 
 double EvidenceMeter::distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const {
   double largest = 0.0;
-  for (const double u : {-1.0, 1.0}) {
-    for (const double v : {-1.0, 1.0}) {
-      const Eigen::Vector2d corner =
-          strip_.world({u * strip_.half_extent.x(), v * strip_.half_extent.y()});
-      largest = std::max(largest, (a * corner - b * corner).norm());
-    }
+  for (const Eigen::Vector2d& corner : strip_.corners()) {
+    largest = std::max(largest, (a * corner - b * corner).norm());
   }
   return largest;
 }

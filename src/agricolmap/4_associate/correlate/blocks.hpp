@@ -1,6 +1,7 @@
 // Cutting the moving map into blocks along its own axes.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "agricolmap/2_grid/signal_map.hpp"
@@ -19,6 +20,12 @@ struct StripFrame {
   }
   Eigen::Vector2d world(const Eigen::Vector2d& local_point) const {
     return centre + axes * local_point;
+  }
+  /// In the levelled frame [m]: both low, far along, far across, both high.
+  std::array<Eigen::Vector2d, 4> corners() const {
+    const Eigen::Vector2d& half = half_extent;
+    return {world({-half.x(), -half.y()}), world({half.x(), -half.y()}),
+            world({-half.x(), half.y()}), world({half.x(), half.y()})};
   }
 };
 

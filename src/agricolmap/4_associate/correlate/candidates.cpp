@@ -11,9 +11,9 @@ using Corners = std::array<Eigen::Vector2d, 4>;
 
 Corners cornersOf(const Candidate& candidate, const StripFrame& strip, const SearchSpace& space) {
   const Eigen::Affine2d pose = poseOf(candidate, space);
-  const Eigen::Vector2d& half = strip.half_extent;
-  return {pose * strip.world({-half.x(), -half.y()}), pose * strip.world({half.x(), -half.y()}),
-          pose * strip.world({-half.x(), half.y()}), pose * strip.world({half.x(), half.y()})};
+  Corners corners = strip.corners();
+  for (Eigen::Vector2d& corner : corners) corner = pose * corner;
+  return corners;
 }
 
 bool near(const Corners& a, const Corners& b, double separation) {
