@@ -27,40 +27,15 @@ constexpr double kMinSeenShare = 0.3;  // of a block's area, in both maps
 /// smaller ones hold too little to be placed alone.
 constexpr double kFewestBlocks = 12.0;
 constexpr double kLeastBlock = 0.6;
+/// Around a pose the highest score of the nearest whole cells counts: at most this far [cells].
+constexpr int kPeakReach = 1;
+/// A part of the strip that is smaller than this is judged as if it were as large.
+constexpr double kLeastInside = 0.2;
 
 double surfaceDeviation(const ComplexRaster& surface) {
   double sum2 = 0.0;
   for (const float v : surface.re) sum2 += static_cast<double>(v) * static_cast<double>(v);
   return std::sqrt(sum2 / static_cast<double>(surface.size()));
-}
-
-/// Highest value within `radius` cells of (col, row); positions outside the map do not count.
-struct Peak {
-  double value = -std::numeric_limits<double>::infinity();
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< (col, row)
-};
-
-template <typename Accept>
-Peak highest(const ComplexRaster& surface, const Fft2& fft, const GridFrame& frame,
-             const Eigen::Vector2d& centre, double radius, const Accept& accept) {
-  Peak peak;
-  const auto within = [](double at, int count) {
-    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
-  };
-  const int r0 = within(std::floor(centre.y() - radius), frame.rows);
-  const int r1 = within(std::ceil(centre.y() + radius), frame.rows);
-  const int c0 = within(std::floor(centre.x() - radius), frame.cols);
-  const int c1 = within(std::ceil(centre.x() + radius), frame.cols);
-  for (int r = r0; r <= r1; ++r) {
-    for (int c = c0; c <= c1; ++c) {
-      const Eigen::Vector2d at(c, r);
-      if ((at - centre).norm() > radius || !accept(at)) continue;
-      const auto value =
-          static_cast<double>(surface.re[static_cast<std::size_t>(r) * fft.cols() + c]);
-      if (value > peak.value) peak = {value, at};
-    }
-  }
-  return peak;
 }
 
 }  // namespace
@@ -81,26 +56,63 @@ EvidenceMeter::EvidenceMeter(const SignalMap& fixed, const SignalMap& moving,
   checkOptions(options);
 }
 
-ComplexRaster EvidenceMeter::wholeSurface(const Eigen::Affine2d& pose, Eigen::Vector2d& at) const {
+Template EvidenceMeter::wholeTemplate(const Eigen::Affine2d& pose) const {
   Eigen::AlignedBox2d bounds;
   for (const Eigen::Vector2d& corner : strip_.corners()) bounds.extend(corner);
-  const Template piece =
-      makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
-                   options_.filter.height_weight, [](const Eigen::Vector2d&) { return true; });
-  ComplexRaster surface(filter_.fft().size());
-  MatchedFilter::Work work(filter_);
-  filter_.correlate(piece, surface, work);
-  at = fixed_.frame.cellOf(pose * strip_.centre);
-  return surface;
+  return makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
+                      options_.filter.height_weight, [](const Eigen::Vector2d&) { return true; });
+}
+
+double EvidenceMeter::significance(const Template& piece, double deviation,
+                                   const Eigen::Affine2d& pose) const {
+  if (deviation <= 0.0) return 0.0;
+  const Eigen::Vector2d at = fixed_.frame.cellOf(pose * strip_.centre);
+  const int row0 = static_cast<int>(std::lround(at.y())) + piece.first_row;
+  const int col0 = static_cast<int>(std::lround(at.x())) + piece.first_col;
+  double energy = 0.0;
+  double inside = 0.0;
+  for (int r = 0; r < piece.re.rows(); ++r) {
+    for (int c = 0; c < piece.re.cols(); ++c) {
+      const float cell = piece.re(r, c) * piece.re(r, c) + piece.im(r, c) * piece.im(r, c);
+      energy += static_cast<double>(cell);
+      if (!fixed_.weight.contains(row0 + r, col0 + c)) continue;
+      if (fixed_.weight(row0 + r, col0 + c) > 0.0F) inside += static_cast<double>(cell);
+    }
+  }
+  if (inside <= 0.0) return 0.0;
+  const Raster<float> scores = blockScores(piece, at, kPeakReach);
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const float score : scores) highest = std::max(highest, static_cast<double>(score));
+  return highest / (deviation * std::sqrt(std::max(kLeastInside, inside / energy)));
 }
 
 double EvidenceMeter::significance(const Eigen::Affine2d& pose) const {
-  Eigen::Vector2d at;
-  const ComplexRaster surface = wholeSurface(pose, at);
-  const double deviation = surfaceDeviation(surface);
-  const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, 1.5,
-                            [](const Eigen::Vector2d&) { return true; });
-  return deviation > 0.0 ? peak.value / deviation : 0.0;
+  const Template piece = wholeTemplate(pose);
+  MatchedFilter::Work work(filter_);
+  return significance(piece, filter_.deviation(piece, work), pose);
+}
+
+double EvidenceMeter::highestOther(const ComplexRaster& surface, const Eigen::Vector2d& centre,
+                                   double radius, const Eigen::Vector2d& peak) const {
+  const GridFrame& frame = fixed_.frame;
+  const auto within = [](double at, int count) {
+    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
+  };
+  const int r0 = within(std::floor(centre.y() - radius), frame.rows);
+  const int r1 = within(std::ceil(centre.y() + radius), frame.rows);
+  const int c0 = within(std::floor(centre.x() - radius), frame.cols);
+  const int c1 = within(std::ceil(centre.x() + radius), frame.cols);
+  const double exclusion = options_.exclusion / frame.cell;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (int r = r0; r <= r1; ++r) {
+    const float* scores = surface.re.data() + static_cast<std::size_t>(r) * filter_.fft().cols();
+    for (int c = c0; c <= c1; ++c) {
+      const Eigen::Vector2d at(c, r);
+      if ((at - centre).norm() > radius || (at - peak).norm() <= exclusion) continue;
+      highest = std::max(highest, static_cast<double>(scores[c]));
+    }
+  }
+  return highest;
 }
 
 double EvidenceMeter::distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const {
@@ -194,20 +206,19 @@ Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const SearchSpace& 
                                 double rival) const {
   const double cell = fixed_.frame.cell;
   Evidence evidence;
-  Eigen::Vector2d at;
-  const ComplexRaster surface = wholeSurface(pose, at);
+  const Template piece = wholeTemplate(pose);
+  ComplexRaster surface(filter_.fft().size());
+  MatchedFilter::Work work(filter_);
+  filter_.correlate(piece, surface, work);
   const double deviation = surfaceDeviation(surface);
-  const auto any = [](const Eigen::Vector2d&) { return true; };
-  const Peak peak = highest(surface, filter_.fft(), fixed_.frame, at, 1.5, any);
+  evidence.significance = significance(piece, deviation, pose);
   // The shifts that the guess allows, about where it puts the strip's middle.
+  const Eigen::Vector2d at = fixed_.frame.cellOf(pose * strip_.centre);
   const Eigen::Vector2d guess = fixed_.frame.cellOf(strip_.centre);
-  const Peak other = highest(
-      surface, filter_.fft(), fixed_.frame, guess, space.uncertainty.translation / cell,
-      [&](const Eigen::Vector2d& p) { return (p - peak.at).norm() * cell > options_.exclusion; });
+  const double other = highestOther(surface, guess, space.uncertainty.translation / cell, at);
   if (deviation > 0.0) {
-    evidence.significance = peak.value / deviation;
     // Next to nothing else in reach: compared with one deviation, what chance gives anywhere.
-    evidence.uniqueness = evidence.significance / std::max({other.value / deviation, rival, 1.0});
+    evidence.uniqueness = evidence.significance / std::max({other / deviation, rival, 1.0});
   }
   evidence.block_side = blockSide(strip_, options_);
   const std::vector<Block> blocks = cutBlocks(moving_, strip_, evidence.block_side);

@@ -60,9 +60,14 @@ class EvidenceMeter {
   double distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const;
 
  private:
-  /// Scores of all shifts of the whole map under the pose's linear part; `at` is the cell that the
-  /// pose predicts.
-  ComplexRaster wholeSurface(const Eigen::Affine2d& pose, Eigen::Vector2d& at) const;
+  /// The whole moving map under the pose's linear part.
+  Template wholeTemplate(const Eigen::Affine2d& pose) const;
+  /// A template's score at a pose, in deviations of what chance gives to as large a part of it as
+  /// lies on the fixed map.
+  double significance(const Template& piece, double deviation, const Eigen::Affine2d& pose) const;
+  /// Highest score of a shift within `radius` of `centre` and not about `peak` (col, row) [cells].
+  double highestOther(const ComplexRaster& surface, const Eigen::Vector2d& centre, double radius,
+                      const Eigen::Vector2d& peak) const;
   BlockEvidence placeBlock(const Block& block, const Eigen::Affine2d& pose, bool& usable) const;
   /// Whether the fixed map has seen enough of the square of half a side `half` around a cell.
   bool seenAround(const Eigen::Vector2d& at, double half) const;

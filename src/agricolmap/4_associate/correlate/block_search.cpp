@@ -114,11 +114,16 @@ std::vector<BlockSearch::Surface> BlockSearch::correlate(const Eigen::Matrix2d& 
   ComplexRaster both(filter_.fft().size());
   std::vector<Surface> surfaces(blocks_.size());
   const auto take = [&](const std::vector<float>& from, Surface& surface) {
-    surface.score = Raster<float>(frame.rows, frame.cols);
+    const int rim = filter_.rim();
+    surface.score = Raster<float>(frame.rows + 2 * rim, frame.cols + 2 * rim);
     double sum2 = 0.0;
-    for (int r = 0; r < frame.rows; ++r) {
-      const float* source = from.data() + static_cast<std::size_t>(r) * filter_.fft().cols();
-      std::copy(source, source + frame.cols, surface.score.row(r));
+    for (int r = 0; r < surface.score.rows(); ++r) {
+      // What lies before the map's first row or column stands at the end: correlation is circular.
+      const int row = (r - rim + filter_.fft().rows()) % filter_.fft().rows();
+      const float* source = from.data() + static_cast<std::size_t>(row) * filter_.fft().cols();
+      float* to = surface.score.row(r);
+      std::copy(source + filter_.fft().cols() - rim, source + filter_.fft().cols(), to);
+      std::copy(source, source + frame.cols + rim, to + rim);
     }
     for (const float v : surface.score) sum2 += static_cast<double>(v) * static_cast<double>(v);
     surface.variance = sum2 / static_cast<double>(surface.score.size());
@@ -141,17 +146,28 @@ BlockSearch::Offsets BlockSearch::offsetsOf(const Hypothesis& hypothesis) const 
   for (const Block& block : blocks_) {
     const Eigen::Vector2d at =
         filter_.frame().cellOf(space_.centre + linear * (block.centre - space_.centre));
-    offsets.emplace_back(static_cast<int>(std::lround(at.x())),
-                         static_cast<int>(std::lround(at.y())));
+    offsets.emplace_back(static_cast<int>(std::lround(at.x())) + filter_.rim(),
+                         static_cast<int>(std::lround(at.y())) + filter_.rim());
   }
   return offsets;
+}
+
+double BlockSearch::insideShare(const Eigen::Vector2i& at) const {
+  const int rim = filter_.rim();
+  const GridFrame& frame = filter_.frame();
+  const auto within = [&](int margin) {
+    return at.x() >= rim - margin && at.x() < frame.cols + rim + margin && at.y() >= rim - margin &&
+           at.y() < frame.rows + rim + margin;
+  };
+  return within(0) ? 1.0 : within(rim) ? 0.5 : 0.0;
 }
 
 std::vector<BlockSearch::Peak> BlockSearch::boundPeaks(const std::vector<Surface>& bounds,
                                                        const Offsets& offsets) const {
   if (shifts_.isEmpty()) return {};
-  const int rows = filter_.frame().rows;
-  const int cols = filter_.frame().cols;
+  const int rim = filter_.rim();
+  const int rows = filter_.frame().rows + 2 * rim;
+  const int cols = filter_.frame().cols + 2 * rim;
   const int first = shifts_.min().x();
   const int width = shifts_.max().x() - first + 1;
   double total = 0.0;
@@ -177,8 +193,15 @@ std::vector<BlockSearch::Peak> BlockSearch::boundPeaks(const std::vector<Surface
       if (from == to) continue;
       const float* source = bounds[b].score.row(row) + offsets[b].x() + first;
       for (int i = from; i < to; ++i) sum[static_cast<std::size_t>(i)] += source[i];
-      variance[static_cast<std::size_t>(from)] += static_cast<float>(bounds[b].variance);
-      variance[static_cast<std::size_t>(to)] -= static_cast<float>(bounds[b].variance);
+      // Half of what a block on the map has where only its edge may be: see insideShare.
+      const auto half = static_cast<float>(0.5 * bounds[b].variance);
+      variance[static_cast<std::size_t>(from)] += half;
+      variance[static_cast<std::size_t>(to)] -= half;
+      if (row < rim || row >= rows - rim) continue;
+      const int on_from = std::clamp(rim - offsets[b].x() - first, from, to);
+      const int on_to = std::clamp(cols - rim - offsets[b].x() - first, on_from, to);
+      variance[static_cast<std::size_t>(on_from)] += half;
+      variance[static_cast<std::size_t>(on_to)] -= half;
     }
     float inside = 0.0F;
     for (int i = 0; i < width; ++i) {
@@ -218,9 +241,10 @@ Candidate BlockSearch::bestNear(const Peak& peak, const std::vector<Hypothesis>&
         double inside = 0.0;
         for (std::size_t b = 0; b < surfaces.size(); ++b) {
           const Eigen::Vector2i at = fine_offsets[h][b] + shift;
-          if (!surfaces[b].score.contains(at.y(), at.x())) continue;
+          const double share = insideShare(at);
+          if (share == 0.0) continue;
           sum += static_cast<double>(surfaces[b].score(at.y(), at.x()));
-          inside += surfaces[b].variance;
+          inside += share * surfaces[b].variance;
         }
         if (inside < min_inside_ * total || inside <= 0.0) continue;
         const double score = sum / std::sqrt(inside);

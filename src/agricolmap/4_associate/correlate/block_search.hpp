@@ -19,7 +19,7 @@ class BlockSearch {
  public:
   /// `energy`: of all blocks of the strip, of which `blocks` may be a part. `peaks`: places per
   /// coarse hypothesis at which the finer ones are looked at. `min_inside`: least share of the
-  /// blocks whose middles lie in the map. All references must outlive this.
+  /// blocks that lie in the map. All references must outlive this.
   BlockSearch(const SignalMap& moving, const MatchedFilter& filter, const SearchSpace& space,
               const StripFrame& strip, std::vector<Block> blocks, double energy, int peaks,
               double min_inside);
@@ -29,12 +29,12 @@ class BlockSearch {
   std::vector<Candidate> run(const Hypothesis& coarse, const std::vector<Hypothesis>& fine) const;
 
  private:
-  /// Score of a block's middle at each cell of the map, and its deviation there.
+  /// Score of a block's middle at each cell of the map and of the filter's rim around it.
   struct Surface {
     Raster<float> score;
     double variance = 0.0;
   };
-  /// Cells (col, row) by which blocks differ from the strip's middle.
+  /// Cells (col, row) of the surface at which blocks lie when the strip is not shifted.
   using Offsets = std::vector<Eigen::Vector2i>;
   struct Peak {
     float score;
@@ -44,6 +44,9 @@ class BlockSearch {
   std::vector<Surface> correlate(const Eigen::Matrix2d& linear) const;
   Offsets offsetsOf(const Hypothesis& hypothesis) const;
   std::vector<Peak> boundPeaks(const std::vector<Surface>& bounds, const Offsets& offsets) const;
+  /// How much of a block whose middle lies at this cell of a surface takes part: all of it on the
+  /// map, half in the rim, which is as wide as half a block.
+  double insideShare(const Eigen::Vector2i& at) const;
   Candidate bestNear(const Peak& peak, const std::vector<Hypothesis>& fine,
                      const std::vector<Offsets>& fine_offsets,
                      const std::vector<Surface>& surfaces) const;

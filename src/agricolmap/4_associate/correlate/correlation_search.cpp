@@ -172,7 +172,9 @@ AssociationResult CorrelationSearch::search(const GridMap& fixed, const GridMap&
     cell *= kCoarser;
     setup = setUp(fixed, moving, space, waves, cell);
   }
-  const MatchedFilter filter(setup.fixed, options_.filter);
+  // A block counts as soon as its middle is within half of it from the map.
+  const int rim = static_cast<int>(std::ceil(0.5 * options_.block / setup.fixed.frame.cell));
+  const MatchedFilter filter(setup.fixed, options_.filter, rim);
   const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, setup.energy,
                            options_.peaks, options_.min_inside);
   const Plan& plan = setup.plan;

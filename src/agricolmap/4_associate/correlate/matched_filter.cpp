@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agricolmap/4_associate/correlate/whitening.hpp"
+
 namespace agricolmap {
 
 void describe(OptionTable& table, MatchedFilterOptions& options) {
@@ -12,80 +14,22 @@ void describe(OptionTable& table, MatchedFilterOptions& options) {
                "weight of the height channel beside the greenness");
 }
 
-namespace {
-
-/// |spectrum|², averaged over 3 × 3 frequencies: one map is one sample of its field's spectrum.
-std::vector<float> smoothedPower(const ComplexRaster& spectrum, int rows, int cols) {
-  std::vector<float> power(spectrum.size());
-  for (std::size_t i = 0; i < power.size(); ++i) {
-    power[i] = spectrum.re[i] * spectrum.re[i] + spectrum.im[i] * spectrum.im[i];
-  }
-  std::vector<float> across(power.size());
-  for (int r = 0; r < rows; ++r) {
-    const std::size_t base = static_cast<std::size_t>(r) * cols;
-    for (int c = 0; c < cols; ++c) {
-      across[base + c] =
-          power[base + (c + cols - 1) % cols] + power[base + c] + power[base + (c + 1) % cols];
-    }
-  }
-  for (int r = 0; r < rows; ++r) {
-    const std::size_t above = static_cast<std::size_t>((r + rows - 1) % rows) * cols;
-    const std::size_t here = static_cast<std::size_t>(r) * cols;
-    const std::size_t below = static_cast<std::size_t>((r + 1) % rows) * cols;
-    for (int c = 0; c < cols; ++c) {
-      power[here + c] = (across[above + c] + across[here + c] + across[below + c]) / 9.0F;
-    }
-  }
-  return power;
-}
-
-/// The spectrum of one channel divided by its power plus the floor.
-ComplexRaster whitenedSpectrum(const SignalMap& fixed, int channel, const Fft2& fft, double floor) {
-  ComplexRaster data(fft.size());
-  ComplexRaster scratch(fft.size());
-  for (int r = 0; r < fixed.frame.rows; ++r) {
-    for (int c = 0; c < fixed.frame.cols; ++c) {
-      data.re[static_cast<std::size_t>(r) * fft.cols() + c] =
-          fixed.channel[channel](r, c) * std::min(1.0F, fixed.weight(r, c));
-    }
-  }
-  fft.forward(data, scratch);
-  const std::vector<float> power = smoothedPower(data, fft.cols(), fft.rows());
-  double mean = 0.0;
-  for (const float p : power) mean += static_cast<double>(p);
-  mean /= static_cast<double>(power.size());
-  const auto add = static_cast<float>(std::max(floor * mean, 1e-20));
-  for (std::size_t i = 0; i < power.size(); ++i) {
-    // Scaled to unit mean gain, so that the two channels stay comparable.
-    const float gain = static_cast<float>(std::max(mean, 1e-20)) / (power[i] + add);
-    data.re[i] *= gain;
-    data.im[i] *= gain;
-  }
-  return data;
-}
-
-}  // namespace
-
-MatchedFilter::MatchedFilter(const SignalMap& fixed, const MatchedFilterOptions& options)
+MatchedFilter::MatchedFilter(const SignalMap& fixed, const MatchedFilterOptions& options, int rim)
     : frame_(fixed.frame),
       options_(options),
-      fft_(Fft2::goodSize(fixed.frame.rows), Fft2::goodSize(fixed.frame.cols)) {
-  whitened_ = whitenedSpectrum(fixed, 0, fft_, options.floor);
-  const ComplexRaster height = whitenedSpectrum(fixed, 1, fft_, options.floor);
-  // greenness + i · height: the real part of conj(template) · map is the sum of both channels.
-  for (std::size_t i = 0; i < whitened_.size(); ++i) {
-    whitened_.re[i] -= height.im[i];
-    whitened_.im[i] += height.re[i];
-  }
-  ComplexRaster map = whitened_;
-  ComplexRaster scratch(fft_.size());
-  fft_.inverse(map, scratch);
+      rim_(rim),
+      fft_(Fft2::goodSize(fixed.frame.rows + 2 * rim), Fft2::goodSize(fixed.frame.cols + 2 * rim)) {
+  const ComplexRaster map = whitenedMap(fixed, fft_, options.floor);
   greenness_ = Raster<float>(fft_.rows(), fft_.cols());
   height_ = Raster<float>(fft_.rows(), fft_.cols());
   for (std::size_t i = 0; i < map.size(); ++i) {
     greenness_[i] = map.re[i];
     height_[i] = map.im[i];
   }
+  // greenness + i · height: the real part of conj(template) · map is the sum of both channels.
+  whitened_ = map;
+  ComplexRaster scratch(fft_.size());
+  fft_.forward(whitened_, scratch);
 }
 
 void MatchedFilter::multiply(const Template& piece, ComplexRaster& product, Work& work) const {
@@ -149,6 +93,28 @@ void MatchedFilter::correlate(const Template& piece, ComplexRaster& surface, Wor
   multiply(piece, surface, work);
   fft_.inverse(surface, work.scratch);
   std::fill(surface.im.begin(), surface.im.end(), 0.0F);
+}
+
+double MatchedFilter::deviation(const Template& piece, Work& work) const {
+  multiply(piece, work.first, work);
+  const int rows = fft_.rows();
+  const int cols = fft_.cols();
+  // Parseval, over the part of the spectrum that gives the real scores.
+  double sum2 = 0.0;
+  for (int c = 0; c < cols; ++c) {
+    const std::size_t here = static_cast<std::size_t>(c) * rows;
+    const std::size_t there = static_cast<std::size_t>((cols - c) % cols) * rows;
+    const auto power = [&](std::size_t k, std::size_t m) {
+      const float re = 0.5F * (work.first.re[k] + work.first.re[m]);
+      const float im = 0.5F * (work.first.im[k] - work.first.im[m]);
+      return static_cast<double>(re * re + im * im);
+    };
+    sum2 += power(here, there);
+    for (int r = 1; r < rows; ++r) {
+      sum2 += power(here + static_cast<std::size_t>(r), there + static_cast<std::size_t>(rows - r));
+    }
+  }
+  return std::sqrt(sum2) / static_cast<double>(fft_.size());
 }
 
 }  // namespace agricolmap

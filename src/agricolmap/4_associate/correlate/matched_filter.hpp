@@ -35,7 +35,9 @@ Template makeTemplate(const SignalMap& moving, const Eigen::Vector2d& anchor,
 
 class MatchedFilter {
  public:
-  MatchedFilter(const SignalMap& fixed, const MatchedFilterOptions& options);
+  /// `rim`: how far beyond the map's border [cells] a piece's anchor is scored too, so that pieces
+  /// that reach over it count with what they have inside.
+  MatchedFilter(const SignalMap& fixed, const MatchedFilterOptions& options, int rim = 0);
 
   /// Buffers of one correlation at a time.
   struct Work {
@@ -50,9 +52,12 @@ class MatchedFilter {
                  Work& work) const;
   /// One template alone; `surface.im` is 0.
   void correlate(const Template& piece, ComplexRaster& surface, Work& work) const;
+  /// Root mean square of a template's scores over all shifts, for half of what the scores cost.
+  double deviation(const Template& piece, Work& work) const;
 
   const Fft2& fft() const { return fft_; }
   const GridFrame& frame() const { return frame_; }
+  int rim() const { return rim_; }
   const MatchedFilterOptions& options() const { return options_; }
   /// The whitened map itself, channel by channel; cells beyond the frame pad it for the FFT.
   const Raster<float>& whitenedGreenness() const { return greenness_; }
@@ -64,6 +69,7 @@ class MatchedFilter {
 
   GridFrame frame_;
   MatchedFilterOptions options_;
+  int rim_;
   Fft2 fft_;
   ComplexRaster whitened_;  ///< spectrum of the whitened map, greenness + i · height
   Raster<float> greenness_;

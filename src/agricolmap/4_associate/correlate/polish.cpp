@@ -7,7 +7,7 @@
 namespace agricolmap {
 namespace {
 
-constexpr double kFirstStep = 0.7;  // cells
+constexpr double kFirstStep = 1.4;  // cells
 constexpr double kLastStep = 0.15;  // cells
 constexpr int kSweeps = 6;          // per step length, at most
 
