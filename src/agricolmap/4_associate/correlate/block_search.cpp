@@ -79,18 +79,14 @@ double centred(Raster<float>& raster) {
 
 BlockSearch::BlockSearch(const SignalMap& moving, const MatchedFilter& filter,
                          const SearchSpace& space, const StripFrame& strip,
-                         std::vector<Block> blocks, double energy, int peaks, double min_inside)
+                         std::vector<Block> blocks, int peaks, double min_inside)
     : moving_(moving),
       filter_(filter),
       space_(space),
       strip_(strip),
       blocks_(std::move(blocks)),
-      share_(1.0),
       peaks_(peaks),
       min_inside_(min_inside) {
-  double here = 0.0;
-  for (const Block& block : blocks_) here += block.energy;
-  if (energy > 0.0) share_ = here / energy;
   const GridFrame& frame = filter.frame();
   radius_ = space.uncertainty.translation / frame.cell;
   // Where the strip's middle may come to lie: not further beyond the map than half of the strip.
@@ -277,8 +273,8 @@ std::vector<Candidate> BlockSearch::run(const Hypothesis& coarse,
   // Templates have det cells for each of the moving map's.
   double variance = 0.0;
   for (const Surface& surface : surfaces) variance += surface.variance;
-  const double deviation = std::sqrt(variance / std::max(share_, 1e-9)) /
-                           std::abs(linearOf(coarse, space_.scale_axes).determinant());
+  const double deviation =
+      std::sqrt(variance) / std::abs(linearOf(coarse, space_.scale_axes).determinant());
   std::vector<Candidate> found;
   for (const Peak& peak : boundPeaks(bounds, offsets)) {
     Candidate best = bestNear(peak, fine, fine_offsets, surfaces);

@@ -17,12 +17,11 @@ namespace agricolmap {
 
 class BlockSearch {
  public:
-  /// `energy`: of all blocks of the strip, of which `blocks` may be a part. `peaks`: places per
+  /// `blocks`: those of the strip that take part. `peaks`: places per
   /// coarse hypothesis at which the finer ones are looked at. `min_inside`: least share of the
   /// blocks that lie in the map. All references must outlive this.
   BlockSearch(const SignalMap& moving, const MatchedFilter& filter, const SearchSpace& space,
-              const StripFrame& strip, std::vector<Block> blocks, double energy, int peaks,
-              double min_inside);
+              const StripFrame& strip, std::vector<Block> blocks, int peaks, double min_inside);
 
   /// The best of `fine` at each of the places. Scores: sum of the blocks' scores over the deviation
   /// of such a sum by chance, so that strips partly beyond the map's edge compare with others.
@@ -56,7 +55,6 @@ class BlockSearch {
   const SearchSpace& space_;
   const StripFrame& strip_;
   std::vector<Block> blocks_;
-  double share_;  ///< of the strip's energy in `blocks_`
   int peaks_;
   double min_inside_;
   Eigen::AlignedBox2i shifts_;  ///< (col, row) that the guess and the map allow [cells]

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace agricolmap {
 namespace {
@@ -84,6 +85,35 @@ std::vector<Block> cutBlocks(const SignalMap& map, const StripFrame& strip, doub
     }
   }
   return blocks;
+}
+
+Stretch texturedStretch(const std::vector<Block>& blocks, const StripFrame& strip, double length) {
+  double from = -std::numeric_limits<double>::infinity();
+  double to = std::numeric_limits<double>::infinity();
+  if (2.0 * strip.half_extent.x() > length) {
+    double most = -1.0;
+    for (const Block& first : blocks) {
+      double energy = 0.0;
+      for (const Block& block : blocks) {
+        if (block.low.x() < first.low.x() || block.high.x() > first.low.x() + length) continue;
+        energy += block.energy;
+      }
+      if (energy <= most) continue;
+      most = energy;
+      from = first.low.x();
+      to = first.low.x() + length;
+    }
+  }
+  Stretch stretch;
+  double low = strip.half_extent.x(), high = -strip.half_extent.x();
+  for (const Block& block : blocks) {
+    if (block.low.x() < from || block.high.x() > to) continue;
+    stretch.blocks.push_back(block);
+    low = std::min(low, block.low.x());
+    high = std::max(high, block.high.x());
+  }
+  stretch.half_extent = {0.5 * (high - low), strip.half_extent.y()};
+  return stretch;
 }
 
 Eigen::AlignedBox2d boundsOf(const Block& block, const StripFrame& strip) {

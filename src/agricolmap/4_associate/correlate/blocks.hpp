@@ -34,10 +34,10 @@ StripFrame stripFrame(const SignalMap& map);
 
 /// A rectangle of the strip frame.
 struct Block {
-  Eigen::Vector2d low;  ///< strip-frame coordinates [m]
-  Eigen::Vector2d high;
-  Eigen::Vector2d centre;  ///< levelled frame [m]
-  double energy = 0.0;     ///< sum of squared signal over its seen cells
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();  ///< strip-frame coordinates [m]
+  Eigen::Vector2d high = Eigen::Vector2d::Zero();
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< levelled frame [m]
+  double energy = 0.0;                               ///< sum of squared signal over its seen cells
 
   bool contains(const Eigen::Vector2d& local) const {
     return (local.array() >= low.array()).all() && (local.array() < high.array()).all();
@@ -49,5 +49,15 @@ std::vector<Block> cutBlocks(const SignalMap& map, const StripFrame& strip, doub
 
 /// Axis-aligned bounds of a block in the levelled frame.
 Eigen::AlignedBox2d boundsOf(const Block& block, const StripFrame& strip);
+
+/// Part of a strip: blocks that lie one behind the other.
+struct Stretch {
+  std::vector<Block> blocks;
+  Eigen::Vector2d half_extent = Eigen::Vector2d::Zero();  ///< along and across the strip [m]
+};
+
+/// The stretch of at most `length` [m] along the strip whose blocks hold the most; all of them, if
+/// the strip is not longer.
+Stretch texturedStretch(const std::vector<Block>& blocks, const StripFrame& strip, double length);
 
 }  // namespace agricolmap

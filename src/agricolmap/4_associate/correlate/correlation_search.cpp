@@ -21,6 +21,8 @@ void describe(OptionTable& table, CorrelationOptions& options) {
                "side of the blocks that the moving map is cut into");
   table.integer("max_blocks", options.max_blocks, 1, 1000, "",
                 "at most this many blocks, the most textured ones, take part");
+  table.number("max_length", options.max_length, 1.0, 1000.0, "m",
+               "strips longer than this are sought by their most textured stretch of this length");
   table.flag("rows_on_rows", options.rows_on_rows,
              "only headings and scales that lay the rows of one map on those of the other; all, "
              "when that finds nothing convincing");
@@ -56,23 +58,6 @@ constexpr double kCoarser = 1.2;
 /// And no further than this [m]: then plants are no longer seen.
 constexpr double kCoarsestCell = 0.25;
 
-/// Index of the coarse hypothesis that moves a block's points most nearly as `fine` does.
-std::size_t nearestCoarse(const Hypothesis& fine, const std::vector<Hypothesis>& coarse,
-                          const Eigen::Matrix3d& block_metric) {
-  std::size_t best = 0;
-  double best_distance = std::numeric_limits<double>::max();
-  const Eigen::Vector3d at = fine.vector();
-  for (std::size_t i = 0; i < coarse.size(); ++i) {
-    const Eigen::Vector3d d = coarse[i].vector() - at;
-    const double distance = d.dot(block_metric * d);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = i;
-    }
-  }
-  return best;
-}
-
 /// What is tried: coarse hypotheses, each with the finer ones that are nearest to it.
 struct Plan {
   std::vector<Hypothesis> coarse;
@@ -82,10 +67,10 @@ struct Plan {
 
 Plan planOver(const std::vector<Hypothesis>& coarse, const std::vector<Hypothesis>& fine,
               const Eigen::Matrix3d& block_metric) {
+  const NearestHypothesis nearest_coarse(coarse, block_metric);
   std::vector<std::size_t> nearest(fine.size());
   parallelFor(
-      fine.size(),
-      [&](std::size_t i) { nearest[i] = nearestCoarse(fine[i], coarse, block_metric); }, 256);
+      fine.size(), [&](std::size_t i) { nearest[i] = nearest_coarse.of(fine[i]); }, 256);
   std::vector<std::vector<Hypothesis>> members(coarse.size());
   for (std::size_t i = 0; i < fine.size(); ++i) members[nearest[i]].push_back(fine[i]);
   Plan plan;
@@ -118,7 +103,6 @@ struct CorrelationSearch::Setup {
   SignalMap moving;
   StripFrame strip;
   std::vector<Block> blocks;
-  double energy = 0.0;  ///< of all blocks, `blocks` or not
   Eigen::Matrix3d strip_metric;
   Plan plan;
   bool by_rows = false;  ///< only rows on rows
@@ -138,16 +122,19 @@ CorrelationSearch::Setup CorrelationSearch::setUp(const GridMap& fixed, const Gr
   setup.fixed = makeSignalMap(fixed, factor, options_.signal);
   setup.moving = makeSignalMap(moving, factor, options_.signal);
   setup.strip = stripFrame(setup.moving);
-  setup.blocks =
-      texturedBlocks(cutBlocks(setup.moving, setup.strip, options_.block), options_.max_blocks);
   const StripFrame& strip = setup.strip;
+  const Stretch stretch =
+      texturedStretch(cutBlocks(setup.moving, strip, options_.block), strip, options_.max_length);
+  setup.blocks = texturedBlocks(stretch.blocks, options_.max_blocks);
   const Block& block = setup.blocks.front();
   const Eigen::Matrix3d block_metric =
       displacementMetric(strip.axes, 0.5 * (block.high - block.low), space.scale_axes);
   setup.strip_metric = displacementMetric(strip.axes, strip.half_extent, space.scale_axes);
   const double radius = options_.tolerance * setup.fixed.frame.cell;
   const auto coarse = coverSpace(space.uncertainty, block_metric, radius);
-  auto fine = coverSpace(space.uncertainty, setup.strip_metric, radius);
+  const auto fine =
+      coverSpace(space.uncertainty,
+                 displacementMetric(strip.axes, stretch.half_extent, space.scale_axes), radius);
   auto by_rows = alongWaves(fine, waves.moving, waves.fixed, space.scale_axes, kWaveTolerance);
   setup.by_rows = !by_rows.empty();
   setup.plan = planOver(coarse, setup.by_rows ? by_rows : fine, block_metric);
@@ -175,8 +162,8 @@ AssociationResult CorrelationSearch::search(const GridMap& fixed, const GridMap&
   // A block counts as soon as its middle is within half of it from the map.
   const int rim = static_cast<int>(std::ceil(0.5 * options_.block / setup.fixed.frame.cell));
   const MatchedFilter filter(setup.fixed, options_.filter, rim);
-  const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, setup.energy,
-                           options_.peaks, options_.min_inside);
+  const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, options_.peaks,
+                           options_.min_inside);
   const Plan& plan = setup.plan;
   std::vector<std::vector<Candidate>> found(plan.coarse.size());
   parallelFor(plan.coarse.size(),

@@ -1,8 +1,10 @@
 #include "agricolmap/4_associate/correlate/hypotheses.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "agricolmap/core/transform.hpp"
@@ -119,6 +121,62 @@ std::vector<Hypothesis> coverSpace(const PriorUncertainty& uncertainty,
     hypotheses.push_back({p[0], std::exp(p[1]), std::exp(p[2])});
   }
   return hypotheses;
+}
+
+NearestHypothesis::NearestHypothesis(const std::vector<Hypothesis>& among,
+                                     const Eigen::Matrix3d& metric) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(metric);
+  unit_from_parameters_ = eigen.eigenvalues().cwiseMax(1e-12).cwiseSqrt().asDiagonal() *
+                          eigen.eigenvectors().transpose();
+  Eigen::AlignedBox3d box;
+  for (const Hypothesis& hypothesis : among) {
+    points_.emplace_back(unit_from_parameters_ * hypothesis.vector());
+    box.extend(points_.back());
+  }
+  // About one hypothesis a bin, were they spread over the box; what is not free has no width.
+  double volume = 1.0;
+  double dimensions = 0.0;
+  for (const double width : box.sizes()) {
+    if (width < 1e-6) continue;
+    volume *= width;
+    dimensions += 1.0;
+  }
+  if (dimensions > 0.0) {
+    side_ = std::pow(volume / static_cast<double>(points_.size()), 1.0 / dimensions);
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) bins_[binOf(points_[i])].push_back(i);
+}
+
+NearestHypothesis::Bin NearestHypothesis::binOf(const Eigen::Vector3d& unit) const {
+  const Eigen::Vector3d bin = (unit / side_).array().floor();
+  return {static_cast<int>(bin.x()), static_cast<int>(bin.y()), static_cast<int>(bin.z())};
+}
+
+std::size_t NearestHypothesis::of(const Hypothesis& hypothesis) const {
+  const Eigen::Vector3d at = unit_from_parameters_ * hypothesis.vector();
+  const Bin middle = binOf(at);
+  std::size_t best = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto look = [&](const Bin& bin) {
+    const auto found = bins_.find(bin);
+    if (found == bins_.end()) return;
+    for (const std::size_t i : found->second) {
+      const double distance = (points_[i] - at).squaredNorm();
+      if (distance < nearest || (distance == nearest && i < best)) nearest = distance, best = i;
+    }
+  };
+  // Shells of bins; what lies in the next shell is at least `shell` sides away.
+  for (int shell = 0; nearest > std::pow(std::max(0, shell - 1) * side_, 2); ++shell) {
+    for (int x = -shell; x <= shell; ++x) {
+      for (int y = -shell; y <= shell; ++y) {
+        const bool face = std::abs(x) == shell || std::abs(y) == shell;
+        for (int z = -shell; z <= shell; z += face ? 1 : std::max(1, 2 * shell)) {
+          look({middle[0] + x, middle[1] + y, middle[2] + z});
+        }
+      }
+    }
+  }
+  return best;
 }
 
 }  // namespace agricolmap

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <map>
 #include <vector>
 
 #include "agricolmap/4_associate/association.hpp"
@@ -32,5 +34,23 @@ Eigen::Matrix3d displacementMetric(const Eigen::Matrix2d& axes, const Eigen::Vec
 /// dimensions, and it does not grow when the strip lies obliquely to the scale axes.
 std::vector<Hypothesis> coverSpace(const PriorUncertainty& uncertainty,
                                    const Eigen::Matrix3d& metric, double radius);
+
+/// Finds which of some hypotheses moves the points of a rectangle most nearly as another does.
+class NearestHypothesis {
+ public:
+  /// `metric`: displacementMetric of the rectangle. `among` must not be empty.
+  NearestHypothesis(const std::vector<Hypothesis>& among, const Eigen::Matrix3d& metric);
+  /// Index of the nearest; of several, the first.
+  std::size_t of(const Hypothesis& hypothesis) const;
+
+ private:
+  using Bin = std::array<int, 3>;
+  Bin binOf(const Eigen::Vector3d& unit) const;
+
+  Eigen::Matrix3d unit_from_parameters_;  ///< where the metric is the unit matrix
+  std::vector<Eigen::Vector3d> points_;   ///< there [m]
+  double side_ = 1.0;                     ///< of a bin [m]
+  std::map<Bin, std::vector<std::size_t>> bins_;
+};
 
 }  // namespace agricolmap

@@ -63,5 +63,45 @@ TEST(Hypotheses, TheGuessItselfIsOneAndWithoutUncertaintyTheOnlyOne) {
                           [](const Hypothesis& h) { return h.vector().norm() < 1e-12; }));
 }
 
+TEST(Hypotheses, TheNearestIsWhatLookingAtAllOfThemFinds) {
+  const Eigen::Matrix3d metric =
+      displacementMetric(rotation2(0.3), {1.1, 1.1}, Eigen::Matrix2d::Identity());
+  Random random(5);
+  for (const PriorUncertainty& uncertainty :
+       {PriorUncertainty{}, PriorUncertainty::none(), PriorUncertainty{5.0, 11.5, 0.0}}) {
+    const auto among = coverSpace(uncertainty, metric, 0.1);
+    const NearestHypothesis nearest(among, metric);
+    for (int i = 0; i < 100; ++i) {
+      const Hypothesis sought{random.uniform(-3.0, 3.0), random.uniform(0.7, 1.4),
+                              random.uniform(0.7, 1.4)};
+      double least = 1e9;
+      for (const Hypothesis& h : among) {
+        const Eigen::Vector3d d = h.vector() - sought.vector();
+        least = std::min(least, d.dot(metric * d));
+      }
+      const Eigen::Vector3d d = among[nearest.of(sought)].vector() - sought.vector();
+      EXPECT_NEAR(d.dot(metric * d), least, 1e-9);
+    }
+  }
+}
+
+TEST(Blocks, ALongStripIsSoughtByItsMostTexturedStretch) {
+  StripFrame strip;
+  strip.half_extent = {15.0, 1.0};
+  std::vector<Block> blocks;
+  for (int i = 0; i < 15; ++i) {
+    Block block;
+    block.low = {-15.0 + 2.0 * i, -1.0};
+    block.high = {-13.0 + 2.0 * i, 1.0};
+    block.energy = i >= 4 && i < 9 ? 3.0 : 1.0;
+    blocks.push_back(block);
+  }
+  const Stretch stretch = texturedStretch(blocks, strip, 10.0);
+  ASSERT_EQ(stretch.blocks.size(), 5U);
+  EXPECT_EQ(stretch.blocks.front().low.x(), -7.0);
+  EXPECT_EQ(stretch.half_extent, Eigen::Vector2d(5.0, 1.0));
+  EXPECT_EQ(texturedStretch(blocks, strip, 40.0).blocks.size(), 15U);
+}
+
 }  // namespace
 }  // namespace agricolmap
