@@ -35,6 +35,9 @@ constexpr double kPlainlyUpright = 0.1;
 /// steep for a field.
 constexpr double kSmoother = 0.8;
 constexpr double kFarSmoother = 0.25;
+/// Rougher ground than this [m] may be canopy: then a lower percentile is tried, too.
+constexpr double kPlainlyGround = 0.03;
+constexpr double kLowerPercentile = 0.3;  // of the options' one
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -193,6 +196,14 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
   centre /= static_cast<double>(points.size());
 
   Levelling result = levelFrom(Eigen::Affine3d::Identity(), cloud, points, centre, options);
+  // Under a tall crop that nearly closes few of a cell's points are of the ground. Not at once the
+  // lower percentile: clouds have points below the ground, too.
+  if (result.roughness > kPlainlyGround) {
+    LevelOptions lower = options;
+    lower.percentile *= kLowerPercentile;
+    const Levelling other = levelFrom(Eigen::Affine3d::Identity(), cloud, points, centre, lower);
+    if (other.roughness < kSmoother * result.roughness) result = other;
+  }
   const double limit = options.max_tilt_deg * std::numbers::pi / 180.0;
   // From upright, a steep plane is not always found; the plane through all points is a start that
   // any tilt has. But a narrow strip of a tall crop is as thick as it is wide, and its plane may

@@ -58,6 +58,22 @@ TEST(Level, ANarrowStripOfATallCropStandsUpright) {
   EXPECT_LT(level.tilt, 0.02);
 }
 
+// Under a canopy that nearly closes one point in twenty is of the ground, and the lower leaves of a
+// crop that grows better on one side make a plane of their own.
+TEST(Level, FindsTheGroundUnderATallCropThatNearlyCloses) {
+  Random random(9);
+  Cloud cloud;
+  cloud.name = "maize";
+  for (int i = 0; i < 100000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    if (random.chance(0.95)) p.z() += (0.4 + 0.3 * p.y()) * random.uniform(0.5, 2.0);
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_LT(level.tilt, 0.02);
+  EXPECT_LT(level.roughness, 0.03);
+}
+
 TEST(Level, RefusesCloudsThatAreNoMap) {
   Cloud cloud;
   cloud.name = "bad";
