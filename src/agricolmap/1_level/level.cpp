@@ -29,6 +29,8 @@ namespace {
 constexpr std::size_t kMaxSamples = 200'000;
 constexpr std::size_t kMinPointsPerCell = 3;
 constexpr double kMinExtent = 0.2;  // [m]
+constexpr int kMostRounds = 3;
+constexpr double kSettled = 1e-3;  ///< a round that turns the cloud by less is the last [rad]
 /// A plane found from upright and no steeper than this needs no other start [rad].
 constexpr double kPlainlyUpright = 0.1;
 /// Another plane must be smoother than the upright one's by these factors; the latter if it is too
@@ -158,8 +160,8 @@ Levelling levelFrom(const Eigen::Affine3d& start, const Cloud& cloud, const Poin
                     const Eigen::Vector3d& centre, const LevelOptions& options) {
   Levelling result;
   Eigen::Affine3d levelled = start;
-  // A cell's low percentile is only its ground once the ground is nearly level: hence three rounds.
-  for (int round = 0; round < 3; ++round) {
+  // A cell's low percentile is only its ground once the ground is nearly level: hence more rounds.
+  for (int round = 0; round < kMostRounds; ++round) {
     Points turned(points.size());
     std::transform(points.begin(), points.end(), turned.begin(),
                    [&](const Eigen::Vector3d& p) { return Eigen::Vector3d(levelled * p); });
@@ -177,6 +179,7 @@ Levelling levelFrom(const Eigen::Affine3d& start, const Cloud& cloud, const Poin
     levelled = uprightAbout(centre, normal) * drop * levelled;
     result.roughness = plane.deviation;
     result.cells = low.size();
+    if (std::hypot(normal.x(), normal.y()) < kSettled) break;
   }
   result.tilt = std::acos(std::clamp(levelled.linear()(2, 2), -1.0, 1.0));
   result.levelled_from_guess = Eigen::Translation3d(0.0, 0.0, -centre.z()) * levelled;

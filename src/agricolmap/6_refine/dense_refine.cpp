@@ -136,15 +136,18 @@ struct Noise {
   double deviation[kSignalChannels] = {1.0, 1.0};
 };
 
-/// Sums of one pass over the samples.
+/// Sums of one pass over the samples. A sample's row of the Jacobian is (gx·q, gy·q) with
+/// q = (x, y, 1): the normal matrix has three different blocks, each a sum of g·g·q·qᵀ.
 struct Sums {
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  double block[3][6] = {};  ///< gx², gx·gy, gy² times x², xy, x, y², y, 1
   Parameters right = Parameters::Zero();
   double cells = 0.0;
   double fm[kSignalChannels] = {}, mm[kSignalChannels] = {}, ff[kSignalChannels] = {};
   double rr[kSignalChannels] = {}, weight[kSignalChannels] = {};
   Sums& operator+=(const Sums& other) {
-    normal += other.normal;
+    for (int b = 0; b < 3; ++b) {
+      for (int i = 0; i < 6; ++i) block[b][i] += other.block[b][i];
+    }
     right += other.right;
     cells += other.cells;
     for (int k = 0; k < kSignalChannels; ++k) {
@@ -156,11 +159,23 @@ struct Sums {
     }
     return *this;
   }
+  Eigen::Matrix<double, 6, 6> normal() const {
+    const auto full = [](const double(&b)[6]) {
+      Eigen::Matrix3d m;
+      m << b[0], b[1], b[2], b[1], b[3], b[4], b[2], b[4], b[5];
+      return m;
+    };
+    Eigen::Matrix<double, 6, 6> normal;
+    normal << full(block[0]), full(block[1]), full(block[1]), full(block[2]);
+    return normal;
+  }
 };
 
 void addSample(const Sample& s, const Look& look, const Noise& noise, double robust,
                const bool used[], Sums& sums) {
   sums.cells += 1.0;
+  double curvature[3] = {};
+  double pull[2] = {};
   for (int k = 0; k < kSignalChannels; ++k) {
     if (!used[k]) continue;
     const auto f = static_cast<double>(look.value[k]);
@@ -174,12 +189,22 @@ void addSample(const Sample& s, const Look& look, const Noise& noise, double rob
     sums.rr[k] += w * residual * residual;
     sums.weight[k] += w;
     const double scale = w / (noise.deviation[k] * noise.deviation[k]);
-    const auto x = static_cast<double>(s.x), y = static_cast<double>(s.y);
     const auto gx = static_cast<double>(look.dx[k]), gy = static_cast<double>(look.dy[k]);
-    Parameters j;
-    j << gx * x, gx * y, gx, gy * x, gy * y, gy;
-    sums.normal.selfadjointView<Eigen::Lower>().rankUpdate(j, scale);
-    sums.right -= (scale * residual) * j;
+    curvature[0] += scale * gx * gx;
+    curvature[1] += scale * gx * gy;
+    curvature[2] += scale * gy * gy;
+    pull[0] -= scale * residual * gx;
+    pull[1] -= scale * residual * gy;
+  }
+  const auto x = static_cast<double>(s.x), y = static_cast<double>(s.y);
+  const double products[6] = {x * x, x * y, x, y * y, y, 1.0};
+  for (int b = 0; b < 3; ++b) {
+    for (int i = 0; i < 6; ++i) sums.block[b][i] += curvature[b] * products[i];
+  }
+  for (int b = 0; b < 2; ++b) {
+    sums.right[3 * b] += pull[b] * x;
+    sums.right[3 * b + 1] += pull[b] * y;
+    sums.right[3 * b + 2] += pull[b];
   }
 }
 
@@ -250,7 +275,7 @@ DenseRefineResult refineDense(const SignalMap& fixed, const SignalMap& moving,
       return result;
     }
     updateNoise(sums, noise);
-    Eigen::Matrix<double, 6, 6> normal = sums.normal.selfadjointView<Eigen::Lower>();
+    const Eigen::Matrix<double, 6, 6> normal = sums.normal();
     const Parameters pull = options.prior_weight * normal.diagonal();
     Eigen::Matrix<double, 6, 6> damped = normal;
     damped.diagonal() += pull + Parameters::Constant(1e-9 * (1.0 + normal.trace()));
@@ -270,7 +295,7 @@ DenseRefineResult refineDense(const SignalMap& fixed, const SignalMap& moving,
   result.overlap = sums.cells / static_cast<double>(samples.cells.size());
   result.correlation = correlationOf(sums, used);
   for (int k = 0; k < kSignalChannels; ++k) result.residual[k] = noise.deviation[k];
-  result.information = sums.normal.selfadjointView<Eigen::Lower>();
+  result.information = sums.normal();
   return result;
 }
 
