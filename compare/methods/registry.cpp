@@ -1,0 +1,36 @@
+// All methods by name.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <functional>
+#include <utility>
+
+#include "agricolmap/core/error.hpp"
+#include "methods/method.hpp"
+#include "methods/product.hpp"
+
+namespace agricolmap::compare {
+namespace {
+
+using Maker = std::function<std::unique_ptr<Method>()>;
+
+std::vector<std::pair<std::string, Maker>> peers() { return {}; }
+
+}  // namespace
+
+std::vector<std::string> methodNames() {
+  std::vector<std::string> names = productNames();
+  for (const auto& [name, make] : peers()) names.push_back(name);
+  return names;
+}
+
+std::unique_ptr<Method> makeMethod(const std::string& name) {
+  if (std::unique_ptr<Method> product = makeProduct(name)) return product;
+  for (const auto& [known, make] : peers()) {
+    if (known == name) return make();
+  }
+  throw UsageError(
+      fmt::format("unknown method '{}'; there are: {}", name, fmt::join(methodNames(), ", ")));
+}
+
+}  // namespace agricolmap::compare
