@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "agricolmap/2_grid/data_term.hpp"
+#include "methods/peer_maps.hpp"
 
 namespace agricolmap::compare {
 namespace {
@@ -46,8 +47,8 @@ class Product : public Method {
     options.flow.describe.term = chain_.term;
     const Registration result =
         registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
-    outcome.has_matches = options.association == AssociationKind::kFlow;
     fillFrom(result, input, outcome);
+    outcome.has_matches = options.association == AssociationKind::kFlow;
   }
 
  private:
@@ -60,19 +61,12 @@ void fillFrom(const Registration& result, const MethodInput& input, MethodOutcom
   outcome.accepted = result.verdict.status == Status::kAccepted;
   if (!outcome.accepted) outcome.why = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
   if (result.has_transform) outcome.fixed_from_moving = result.fixed_from_moving;
-  const Eigen::Affine3d fixed_file =
-      Eigen::Translation3d(input.fixed.origin) * result.frames.levelled_from_fixed.inverse();
-  const Eigen::Affine3d moving_file =
-      Eigen::Translation3d(input.moving.origin) * result.frames.levelled_from_moving.inverse();
-  const auto lifted = [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p.x(), p.y(), 0.0); };
-  outcome.matches.reserve(result.association.all_matches.size());
-  for (const Match& match : result.association.all_matches) {
-    outcome.matches.push_back(
-        {moving_file * lifted(match.moving), fixed_file * lifted(match.fixed)});
-  }
+  double inliers = 0.0;
   for (const auto& [name, value] : result.association.counts) {
-    if (name == "inliers") outcome.inliers = static_cast<std::size_t>(value);
+    if (name == "inliers") inliers = value;
   }
+  setMatches(result.frames, input, result.association.all_matches,
+             static_cast<std::size_t>(inliers), outcome);
 }
 
 std::vector<std::string> productNames() {

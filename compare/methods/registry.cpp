@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
+#include "methods/cpd_affine.hpp"
+#include "methods/icp_affine.hpp"
 #include "methods/method.hpp"
 #include "methods/product.hpp"
 
@@ -14,7 +16,13 @@ namespace {
 
 using Maker = std::function<std::unique_ptr<Method>()>;
 
-std::vector<std::pair<std::string, Maker>> peers() { return {}; }
+/// The peers, in the order in which they are listed.
+std::vector<std::pair<std::string, Maker>> peers() {
+  return {
+      {"icp-affine", [] { return makeIcpAffine(); }},
+      {"cpd-affine", [] { return makeCpdAffine(); }},
+  };
+}
 
 }  // namespace
 

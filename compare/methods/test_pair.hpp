@@ -67,6 +67,14 @@ inline void expectRight(const Method& method, const GuessError& error,
                                  << " rad, e_s " << errors.scale << " " << outcome.why;
 }
 
+/// Runs a local method from where it cannot be right, and expects that it is not.
+inline void expectLost(const Method& method, const GuessError& error) {
+  const MethodOutcome outcome = method.run(inputOf(smallPair(), error, {}));
+  if (outcome.fixed_from_moving) {
+    EXPECT_FALSE(errorsOf(outcome, smallPair()).within({})) << method.name();
+  }
+}
+
 /// An empty map, and one without plants, are clear failures and never the guess handed back.
 inline void expectFailsOnEmptyMaps(const Method& method) {
   const SimulatedPair& pair = smallPair();
