@@ -7,6 +7,9 @@
 
 #include "agricolmap/core/error.hpp"
 #include "methods/cpd_affine.hpp"
+#include "methods/features/feature_chain.hpp"
+#include "methods/features/opencv_features.hpp"
+#include "methods/features/surf_features.hpp"
 #include "methods/icp_affine.hpp"
 #include "methods/method.hpp"
 #include "methods/product.hpp"
@@ -21,6 +24,10 @@ std::vector<std::pair<std::string, Maker>> peers() {
   return {
       {"icp-affine", [] { return makeIcpAffine(); }},
       {"cpd-affine", [] { return makeCpdAffine(); }},
+      {"surf", [] { return makeFeatureChain(makeSurf(), "the paper's chain on SURF"); }},
+      {"orb", [] { return makeFeatureChain(makeOrb(), "the paper's chain on ORB"); }},
+      {"fast-brief",
+       [] { return makeFeatureChain(makeFastBrief(), "the paper's chain on FAST and BRIEF"); }},
   };
 }
 
