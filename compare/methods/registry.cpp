@@ -10,9 +10,11 @@
 #include "methods/features/feature_chain.hpp"
 #include "methods/features/opencv_features.hpp"
 #include "methods/features/surf_features.hpp"
+#include "methods/fft_affine.hpp"
 #include "methods/icp_affine.hpp"
 #include "methods/method.hpp"
 #include "methods/product.hpp"
+#include "methods/sift_affine.hpp"
 
 namespace agricolmap::compare {
 namespace {
@@ -28,6 +30,8 @@ std::vector<std::pair<std::string, Maker>> peers() {
       {"orb", [] { return makeFeatureChain(makeOrb(), "the paper's chain on ORB"); }},
       {"fast-brief",
        [] { return makeFeatureChain(makeFastBrief(), "the paper's chain on FAST and BRIEF"); }},
+      {"fft-affine", [] { return makeFftAffine(); }},
+      {"sift-affine", [] { return makeSiftAffine(); }},
   };
 }
 
