@@ -11,6 +11,7 @@
 #include "methods/features/opencv_features.hpp"
 #include "methods/features/surf_features.hpp"
 #include "methods/fft_affine.hpp"
+#include "methods/go_icp/go_icp.hpp"
 #include "methods/icp_affine.hpp"
 #include "methods/method.hpp"
 #include "methods/product.hpp"
@@ -26,6 +27,8 @@ std::vector<std::pair<std::string, Maker>> peers() {
   return {
       {"icp-affine", [] { return makeIcpAffine(); }},
       {"cpd-affine", [] { return makeCpdAffine(); }},
+      {"go-icp", [] { return makeGoIcp(); }},
+      {"go-icp-oracle-scale", [] { return withOracleScale(makeGoIcp()); }},
       {"surf", [] { return makeFeatureChain(makeSurf(), "the paper's chain on SURF"); }},
       {"orb", [] { return makeFeatureChain(makeOrb(), "the paper's chain on ORB"); }},
       {"fast-brief",
