@@ -11,6 +11,7 @@
 #include "methods/features/opencv_features.hpp"
 #include "methods/features/surf_features.hpp"
 #include "methods/fft_affine.hpp"
+#include "methods/fpfh/fpfh_gicp.hpp"
 #include "methods/go_icp/go_icp.hpp"
 #include "methods/icp_affine.hpp"
 #include "methods/method.hpp"
@@ -35,6 +36,8 @@ std::vector<std::pair<std::string, Maker>> peers() {
        [] { return makeFeatureChain(makeFastBrief(), "the paper's chain on FAST and BRIEF"); }},
       {"fft-affine", [] { return makeFftAffine(); }},
       {"sift-affine", [] { return makeSiftAffine(); }},
+      {"fpfh-gicp", [] { return makeFpfhGicp(); }},
+      {"fpfh-gicp-oracle-scale", [] { return withOracleScale(makeFpfhGicp()); }},
   };
 }
 
