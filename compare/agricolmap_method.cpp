@@ -1,6 +1,7 @@
 // agricolmap_method METHOD FIXED MOVING -o RESULT.json: one method on one pair, as a process of its
 // own, whose memory and time can be measured and limited from outside.
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -23,6 +24,7 @@ namespace agricolmap::compare {
 namespace {
 
 struct Arguments {
+  double idle_memory = 0.0;  ///< before anything was done, libraries of all methods included [MiB]
   std::string method;
   std::string fixed;
   std::string moving;
@@ -85,6 +87,13 @@ std::size_t rightMatches(const MethodOutcome& outcome, const Eigen::Affine3d& tr
   return right;
 }
 
+/// Most memory that this process has held so far [MiB].
+double peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
 std::string statusOf(const MethodOutcome& outcome) {
   if (!outcome.fixed_from_moving) return "failed";
   return outcome.accepted ? "accepted" : "not_accepted";
@@ -101,6 +110,8 @@ nlohmann::ordered_json resultJson(const Arguments& arguments, const MethodInput&
       outcome.fixed_from_moving ? matrixJson(*outcome.fixed_from_moving) : nullptr;
   json["read_s"] = read_s;
   json["run_s"] = run_s;
+  json["idle_memory_mib"] = arguments.idle_memory;
+  json["peak_memory_mib"] = peakMemory();
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const auto& [stage, seconds] : outcome.times.stages()) stages[stage] = seconds;
   json["stages_s"] = stages;
@@ -151,6 +162,7 @@ ExitCode runMethod(const Arguments& arguments) {
 
 ExitCode run(int argc, char** argv) {
   Arguments arguments;
+  arguments.idle_memory = peakMemory();
   CLI::App app{"Runs one registration method of the comparison on one pair of clouds."};
   app.name("agricolmap_method");
   app.footer(

@@ -27,7 +27,9 @@ class FpfhGicp : public Method {
  public:
   explicit FpfhGicp(const FpfhGicpParameters& parameters) : parameters_(parameters) {}
   std::string name() const override { return "fpfh-gicp"; }
-  std::string about() const override { return "FPFH, RANSAC and generalised ICP of Open3D"; }
+  std::string about() const override {
+    return "FPFH, fast global registration and generalised ICP of Open3D";
+  }
 
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
@@ -40,7 +42,7 @@ class FpfhGicp : public Method {
         pointsIn(input.moving, maps.frames.levelled_from_moving, moving_box, middle);
     const FpfhGicpResult result = registerByFpfhGicp(fixed, moving, parameters_);
     outcome.times.add("features", result.features_s);
-    outcome.times.add("ransac", result.ransac_s);
+    outcome.times.add("global", result.global_s);
     outcome.times.add("gicp", result.gicp_s);
     if (!result.found) throw InputError(fmt::format("no registration: {}", result.why));
     Eigen::Affine3d about;

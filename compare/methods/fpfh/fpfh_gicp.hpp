@@ -1,4 +1,5 @@
-// FPFH, RANSAC and generalised ICP on the clouds themselves: what a practitioner would run today.
+// FPFH, fast global registration and generalised ICP on the clouds themselves: what a practitioner
+// would run today.
 #pragma once
 
 #include <memory>

@@ -2,7 +2,7 @@
 
 #include <omp.h>
 #include <open3d/geometry/PointCloud.h>
-#include <open3d/pipelines/registration/CorrespondenceChecker.h>
+#include <open3d/pipelines/registration/FastGlobalRegistration.h>
 #include <open3d/pipelines/registration/Feature.h>
 #include <open3d/pipelines/registration/GeneralizedICP.h>
 #include <open3d/pipelines/registration/Registration.h>
@@ -31,7 +31,7 @@ class Timer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// One thread for as long as it lives: RANSAC's draws and GICP's sums depend on their number.
+/// One thread for as long as it lives: sums depend on their number.
 class OneThread {
  public:
   OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
@@ -43,60 +43,53 @@ class OneThread {
   int before_;
 };
 
-std::shared_ptr<PointCloud> thinned(const PlainPoints& points, const FpfhGicpParameters& p) {
+std::shared_ptr<PointCloud> thinned(const PlainPoints& points, double voxel,
+                                    const FpfhGicpParameters& p) {
   PointCloud cloud;
   cloud.points_.reserve(points.size());
   for (const auto& point : points) cloud.points_.emplace_back(point[0], point[1], point[2]);
-  std::shared_ptr<PointCloud> thin = cloud.VoxelDownSample(p.voxel);
-  thin->EstimateNormals(KDTreeSearchParamHybrid(p.normal_radius * p.voxel, p.normal_neighbours));
+  std::shared_ptr<PointCloud> thin = cloud.VoxelDownSample(voxel);
+  thin->EstimateNormals(KDTreeSearchParamHybrid(p.normal_radius * voxel, p.normal_neighbours));
   // Fields are seen from above.
   thin->OrientNormalsToAlignWithDirection(Eigen::Vector3d::UnitZ());
   return thin;
-}
-
-/// RANSAC's pose; its fitness is 0 when it found none.
-o3d::RegistrationResult ransac(const PointCloud& fixed, const PointCloud& moving,
-                               const o3d::Feature& fixed_features,
-                               const o3d::Feature& moving_features, const FpfhGicpParameters& p) {
-  const double distance = p.ransac_distance * p.voxel;
-  const o3d::CorrespondenceCheckerBasedOnEdgeLength edges(p.edge_length);
-  const o3d::CorrespondenceCheckerBasedOnDistance distances(distance);
-  open3d::utility::random::Seed(p.seed);
-  return o3d::RegistrationRANSACBasedOnFeatureMatching(
-      moving, fixed, moving_features, fixed_features, true, distance,
-      o3d::TransformationEstimationPointToPoint(false), p.ransac_points, {edges, distances},
-      o3d::RANSACConvergenceCriteria(p.ransac_iterations, p.ransac_confidence));
 }
 
 void registerInto(FpfhGicpResult& result, const PlainPoints& fixed_points,
                   const PlainPoints& moving_points, const FpfhGicpParameters& p) {
   open3d::utility::SetVerbosityLevel(open3d::utility::VerbosityLevel::Error);
   const Timer features;
-  const std::shared_ptr<PointCloud> fixed = thinned(fixed_points, p);
-  const std::shared_ptr<PointCloud> moving = thinned(moving_points, p);
+  const std::shared_ptr<PointCloud> fixed = thinned(fixed_points, p.voxel, p);
+  const std::shared_ptr<PointCloud> moving = thinned(moving_points, p.voxel, p);
   const KDTreeSearchParamHybrid around(p.feature_radius * p.voxel, p.feature_neighbours);
   const auto fixed_features = o3d::ComputeFPFHFeature(*fixed, around);
   const auto moving_features = o3d::ComputeFPFHFeature(*moving, around);
+  const std::shared_ptr<PointCloud> fine_fixed = thinned(fixed_points, p.fine_voxel, p);
+  const std::shared_ptr<PointCloud> fine_moving = thinned(moving_points, p.fine_voxel, p);
   result.features_s = features.seconds();
   const OneThread one;
-  const Timer sampling;
-  const o3d::RegistrationResult sampled =
-      ransac(*fixed, *moving, *fixed_features, *moving_features, p);
-  result.ransac_s = sampling.seconds();
-  result.ransac_fitness = sampled.fitness_;
+  const Timer matching;
+  open3d::utility::random::Seed(p.seed);
+  o3d::FastGlobalRegistrationOption option;
+  option.maximum_correspondence_distance_ = p.fgr_distance * p.voxel;
+  option.iteration_number_ = p.fgr_iterations;
+  option.maximum_tuple_count_ = p.fgr_tuples;
+  const o3d::RegistrationResult global = o3d::FastGlobalRegistrationBasedOnFeatureMatching(
+      *moving, *fixed, *moving_features, *fixed_features, option);
+  result.global_s = matching.seconds();
   const Timer refining;
-  std::vector<Eigen::Matrix4d> starts = {Eigen::Matrix4d::Identity()};
-  if (sampled.fitness_ > 0.0) starts.emplace_back(sampled.transformation_);
+  const std::vector<Eigen::Matrix4d> starts = {Eigen::Matrix4d::Identity(),
+                                               Eigen::Matrix4d(global.transformation_)};
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const o3d::RegistrationResult refined =
-        o3d::RegistrationGeneralizedICP(*moving, *fixed, p.gicp_distance * p.voxel, starts[i],
-                                        o3d::TransformationEstimationForGeneralizedICP(),
+        o3d::RegistrationGeneralizedICP(*fine_moving, *fine_fixed, p.gicp_distance * p.fine_voxel,
+                                        starts[i], o3d::TransformationEstimationForGeneralizedICP(),
                                         o3d::ICPConvergenceCriteria(1e-6, 1e-6, p.gicp_iterations));
     if (!(refined.fitness_ > 0.0)) continue;
     // Whatever lies on the field's ground has neighbours: the one that fits closer is taken.
     if (result.found && refined.inlier_rmse_ >= result.rmse) continue;
     result.found = true;
-    result.from_ransac = i > 0;
+    result.from_features = i > 0;
     result.fitness = refined.fitness_;
     result.rmse = refined.inlier_rmse_;
     for (int r = 0; r < 4; ++r) {
