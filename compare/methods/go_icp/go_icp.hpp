@@ -19,9 +19,10 @@ struct GoIcpOptions {
   /// Domain and stopping. The article searches all rotations; here, as every method is told how
   /// wrong the guess may be, the cube of rotations that the prior's heading allows (about all three
   /// axes) and the cube of translations that its translation allows. The article's ε, 0.001 per
-  /// point of a cloud scaled to [−1, 1], would be (16 cm)² of a 10 m strip, more than the error of
-  /// any pose: (3 cm)² instead. Its trimming is by overlap: a fifth of the plants is taken to be
-  /// seen by one map alone.
+  /// point of a cloud scaled to [−1, 1], would be (16 cm)² for a strip of 10 m, which any pose on a
+  /// field meets: (3 cm)² instead, between the RMS of right poses (2.2–3.4 cm on simulated fields)
+  /// and of ICP's wrong ones (from 3.3 cm). It trims by overlap: a fifth of the plants is taken to
+  /// be seen by one map alone.
   GoIcpSearch search;
 };
 
