@@ -1,6 +1,5 @@
 #include "methods/fpfh/fpfh_gicp_open3d.hpp"
 
-#include <omp.h>
 #include <open3d/geometry/PointCloud.h>
 #include <open3d/pipelines/registration/FastGlobalRegistration.h>
 #include <open3d/pipelines/registration/Feature.h>
@@ -13,6 +12,12 @@
 #include <exception>
 #include <memory>
 #include <vector>
+
+// Of OpenMP. Not by <omp.h>: every compiler has its own, and clang-tidy's need not be installed.
+extern "C" {
+int omp_get_max_threads();
+void omp_set_num_threads(int threads);
+}
 
 namespace agricolmap::compare {
 namespace {
