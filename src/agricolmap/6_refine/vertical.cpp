@@ -237,4 +237,14 @@ VerticalResult fitVertical(const GridMap& fixed, const GridMap& moving,
   return result;
 }
 
+Eigen::Affine3d liftPose(const Eigen::Affine2d& pose, const VerticalResult& vertical) {
+  Eigen::Affine3d lifted = Eigen::Affine3d::Identity();
+  lifted.linear().topLeftCorner<2, 2>() = pose.linear();
+  lifted.translation().head<2>() = pose.translation();
+  lifted.linear().row(2).head<2>() = vertical.slope.transpose() * pose.linear();
+  lifted.translation().z() =
+      vertical.offset + vertical.slope.dot(pose.translation() - vertical.about);
+  return lifted;
+}
+
 }  // namespace agricolmap

@@ -40,4 +40,7 @@ VerticalResult fitVertical(const GridMap& fixed, const GridMap& moving,
                            const Eigen::Affine2d& fixed_from_moving,
                            const VerticalOptions& options);
 
+/// A horizontal pose, levelled moving → levelled fixed, with the vertical part found for it.
+Eigen::Affine3d liftPose(const Eigen::Affine2d& pose, const VerticalResult& vertical);
+
 }  // namespace agricolmap

@@ -56,7 +56,9 @@ std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
                                                   const PairOutcome* before) const {
   if (index >= kAttempts.size()) return std::nullopt;
   const Attempt& attempt = kAttempts[index];
-  if (index > 0 && options_.association != AssociationKind::kCorrelation) return std::nullopt;
+  const bool correlates =
+      association_ == nullptr && options_.association == AssociationKind::kCorrelation;
+  if (index > 0 && !correlates) return std::nullopt;
   // Nothing new when the rows did not restrict the search before.
   if (before != nullptr && !attempt.rows_on_rows && count(before->counts, "rows_on_rows") < 1.0) {
     return std::nullopt;
@@ -71,7 +73,9 @@ std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
                     {"moving_cells", static_cast<double>(moving_.filled)},
                     {"attempts", static_cast<double>(index + 1)}};
   // 3.–5. Data association: descriptors, flow and vote (Sec. III-B), or the correlation search.
-  outcome.association = makeAssociation(now)->associate(fixed_, moving_, space_, times_);
+  const std::unique_ptr<Association> own = association_ ? nullptr : makeAssociation(now);
+  outcome.association =
+      (association_ ? association_ : own.get())->associate(fixed_, moving_, space_, times_);
   outcome.counts.insert(outcome.counts.end(), outcome.association.counts.begin(),
                         outcome.association.counts.end());
   // 6. Affine with two scales per placement (Eq. 3); 7. refinement of the best.

@@ -44,14 +44,17 @@ bool better(const PairOutcome& a, const PairOutcome& b);
 /// Places the maps of one pair.
 class PairPlacer {
  public:
-  /// All references must outlive this.
+  /// All references must outlive this. `association` takes the place of the one that the options
+  /// name; nullptr: theirs.
   PairPlacer(const GridMap& fixed, const GridMap& moving, const SearchSpace& space,
-             const RegistrationOptions& options, StageTimes& times)
+             const RegistrationOptions& options, StageTimes& times,
+             const Association* association = nullptr)
       : fixed_(fixed),
         moving_(moving),
         space_(space),
         options_(options),
         times_(times),
+        association_(association),
         refinement_(fixed, moving, space, options) {}
 
   /// Searches, first coarsely and, where that does not convince, more finely and freely.
@@ -70,6 +73,7 @@ class PairPlacer {
   const SearchSpace& space_;
   const RegistrationOptions& options_;
   StageTimes& times_;
+  const Association* association_;
   PoseRefinement refinement_;
 };
 

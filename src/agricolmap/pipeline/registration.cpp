@@ -27,17 +27,6 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
   }
 }
 
-/// moving levelled → fixed levelled, with the vertical part.
-Eigen::Affine3d lift(const Eigen::Affine2d& pose, const VerticalResult& vertical) {
-  Eigen::Affine3d lifted = Eigen::Affine3d::Identity();
-  lifted.linear().topLeftCorner<2, 2>() = pose.linear();
-  lifted.translation().head<2>() = pose.translation();
-  lifted.linear().row(2).head<2>() = vertical.slope.transpose() * pose.linear();
-  lifted.translation().z() =
-      vertical.offset + vertical.slope.dot(pose.translation() - vertical.about);
-  return lifted;
-}
-
 /// Fills the transforms and their parts from the poses in the levelled frames.
 void compose(const Cloud& fixed, const Cloud& moving, const VerticalOptions& options,
              Registration& result) {
@@ -51,9 +40,9 @@ void compose(const Cloud& fixed, const Cloud& moving, const VerticalOptions& opt
   for (Alternative& other : result.alternatives) {
     const VerticalResult vertical =
         fitVertical(result.fixed_map, result.moving_map, other.pose, options);
-    other.fixed_from_moving = inFiles(localOf(lift(other.pose, vertical)));
+    other.fixed_from_moving = inFiles(localOf(liftPose(other.pose, vertical)));
   }
-  const Eigen::Affine3d levelled = lift(result.pose, result.vertical);
+  const Eigen::Affine3d levelled = liftPose(result.pose, result.vertical);
   result.local_fixed_from_moving = localOf(levelled);
   result.fixed_from_moving = inFiles(result.local_fixed_from_moving);
   const Eigen::Matrix2d& axes = result.space.scale_axes;
@@ -69,8 +58,12 @@ void compose(const Cloud& fixed, const Cloud& moving, const VerticalOptions& opt
 class Registrar {
  public:
   Registrar(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
-            StageTimes& times)
-      : fixed_(fixed), moving_(moving), options_(options), times_(times) {}
+            StageTimes& times, const Association* association)
+      : fixed_(fixed),
+        moving_(moving),
+        options_(options),
+        times_(times),
+        association_(association) {}
 
   Registration run(const Eigen::Affine3d& guess) {
     prepare(guess);
@@ -172,7 +165,7 @@ class Registrar {
   PairPlacer placer() { return placer(options_); }
   /// `options` must outlive it.
   PairPlacer placer(const RegistrationOptions& options) {
-    return {result_.fixed_map, result_.moving_map, result_.space, options, times_};
+    return {result_.fixed_map, result_.moving_map, result_.space, options, times_, association_};
   }
 
   /// The guess with the moving cloud made larger about its middle.
@@ -227,6 +220,7 @@ class Registrar {
   const Cloud& moving_;
   const RegistrationOptions& options_;
   StageTimes& times_;
+  const Association* association_;
   Registration result_;
   GridOptions grid_;
   Box2 fixed_box_;
@@ -237,11 +231,12 @@ class Registrar {
 }  // namespace
 
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                            const RegistrationOptions& chosen, StageTimes& times) {
+                            const RegistrationOptions& chosen, StageTimes& times,
+                            const Association* association) {
   checkOptions(chosen);
   RegistrationOptions options = chosen;
   requireColours(fixed, moving, options);
-  if ((options.prior.anywhere() || options.prior.scale_unknown) &&
+  if ((options.prior.anywhere() || options.prior.scale_unknown) && association == nullptr &&
       options.association == AssociationKind::kFlow) {
     throw UsageError(
         "the flow needs to know about where to look and at what scale: give --prior-sigma with a "
@@ -251,7 +246,7 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
     options.signal.term = DataTerm::kHeight;
     options.flow.describe.term = DataTerm::kHeight;
   }
-  Registrar registrar(fixed, moving, options, times);
+  Registrar registrar(fixed, moving, options, times, association);
   return options.prior.scale_unknown ? registrar.runAtUnknownScale(guess) : registrar.run(guess);
 }
 

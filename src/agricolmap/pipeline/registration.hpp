@@ -41,8 +41,11 @@ struct Registration : PairOutcome {
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.
 /// Throws InputError for clouds that cannot be used, UsageError for options outside their limits,
-/// Interrupted. A registration that fails is a rejected result, not an exception.
+/// Interrupted. A registration that fails is a rejected result, not an exception. `association`
+/// lets another data association stand in for the one that the options name, in the chain unchanged
+/// otherwise; nullptr: theirs.
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                            const RegistrationOptions& options, StageTimes& times);
+                            const RegistrationOptions& options, StageTimes& times,
+                            const Association* association = nullptr);
 
 }  // namespace agricolmap

@@ -1,0 +1,110 @@
+#include "methods/peer_maps.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "agricolmap/6_refine/vertical.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/pipeline/options.hpp"
+
+namespace agricolmap::compare {
+namespace {
+
+constexpr std::size_t kLeastPoints = 20;
+
+/// The fixed map within `rim` of the moving map's bounds.
+GridMap fixedAround(const PeerMaps& maps, double rim) {
+  const GridFrame& frame = maps.moving.frame;
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(rim);
+  const Eigen::Vector2d size = frame.cell * Eigen::Vector2d(frame.cols, frame.rows);
+  return croppedMap(maps.fixed, Box2(frame.corner - margin, frame.corner + size + margin));
+}
+
+std::vector<VegetationPoint> pointsOf(const GridMap& map, std::size_t most,
+                                      std::string_view which) {
+  const Vegetation vegetation = extractVegetation(map, {});
+  if (vegetation.points.size() < kLeastPoints) {
+    throw InputError(
+        fmt::format("vegetation cannot be told from soil in the {} map: {} ({} points)", which,
+                    describe(vegetation.threshold.status), vegetation.points.size()));
+  }
+  return thinToAtMost(vegetation.points, most);
+}
+
+}  // namespace
+
+PeerMaps makePeerMaps(const MethodInput& input, StageTimes& times) {
+  for (const Cloud* cloud : {&input.fixed, &input.moving}) {
+    if (!cloud->hasColour()) {
+      throw InputError(fmt::format("{}: has no colours; Excess Green needs them", cloud->name));
+    }
+  }
+  const RegistrationOptions paper = preset("paper");
+  PeerMaps maps;
+  const Eigen::Affine3d guess = centredGuess(input.fixed, input.moving, input.guess, input.prior);
+  times.run("level", [&] {
+    levelFixed(input.fixed, paper.level, maps.frames);
+    levelMoving(input.fixed, input.moving, guess, paper.level, maps.frames);
+  });
+  times.run("grid", [&] {
+    const Box2 fixed = boundsOf(input.fixed, maps.frames.levelled_from_fixed);
+    const Box2 moving = boundsOf(input.moving, maps.frames.levelled_from_moving);
+    requirePlausibleExtents(input.fixed, input.moving, fixed, moving);
+    maps.space = searchSpace(moving, maps.frames, input.prior);
+    const Box2 window = reachableWindow(moving, maps.space, 2.0 * paper.signal.high_pass);
+    maps.fixed = makeGridMap(input.fixed, maps.frames.levelled_from_fixed,
+                             window.intersection(fixed), paper.grid);
+    maps.moving = makeGridMap(input.moving, maps.frames.levelled_from_moving, moving, paper.grid);
+  });
+  return maps;
+}
+
+PeerPoints makePeerPoints(const PeerMaps& maps, double rim, std::size_t most_fixed,
+                          std::size_t most_moving, StageTimes& times) {
+  return times.run("vegetation", [&] {
+    PeerPoints points;
+    points.fixed = pointsOf(fixedAround(maps, rim), most_fixed, "fixed");
+    points.moving = pointsOf(maps.moving, most_moving, "moving");
+    return points;
+  });
+}
+
+void setPlanePose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine2d& pose,
+                  MethodOutcome& outcome) {
+  const VerticalResult vertical = outcome.times.run(
+      "vertical", [&] { return fitVertical(maps.fixed, maps.moving, pose, VerticalOptions{}); });
+  if (vertical.status != VerticalStatus::kOk) {
+    outcome.accepted = false;
+    outcome.why = "the heights of the two maps do not fit one another";
+    return;
+  }
+  setLevelledPose(maps, input, liftPose(pose, vertical), outcome);
+}
+
+void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine3d& pose,
+                     MethodOutcome& outcome) {
+  outcome.fixed_from_moving =
+      Eigen::Translation3d(input.fixed.origin) * maps.frames.levelled_from_fixed.inverse() * pose *
+      maps.frames.levelled_from_moving * Eigen::Translation3d(-input.moving.origin);
+}
+
+void setMatches(const PairFrames& frames, const MethodInput& input,
+                const std::vector<Match>& matches, std::size_t inliers, MethodOutcome& outcome) {
+  const Eigen::Affine3d fixed_file =
+      Eigen::Translation3d(input.fixed.origin) * frames.levelled_from_fixed.inverse();
+  const Eigen::Affine3d moving_file =
+      Eigen::Translation3d(input.moving.origin) * frames.levelled_from_moving.inverse();
+  const auto lifted = [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p.x(), p.y(), 0.0); };
+  outcome.has_matches = true;
+  outcome.inliers = inliers;
+  outcome.matches.clear();
+  outcome.matches.reserve(matches.size());
+  for (const Match& match : matches) {
+    outcome.matches.push_back(
+        {moving_file * lifted(match.moving), fixed_file * lifted(match.fixed)});
+  }
+}
+
+}  // namespace agricolmap::compare

@@ -1,0 +1,85 @@
+#include "methods/product.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "agricolmap/2_grid/data_term.hpp"
+#include "methods/peer_maps.hpp"
+
+namespace agricolmap::compare {
+namespace {
+
+/// A chain of the product: a preset, and what its flow compares.
+struct Chain {
+  std::string_view name;
+  std::string_view preset;
+  DataTerm term;
+  std::string_view about;
+};
+
+// The variants are those of the paper's Tab. IV: only the flow's cost changes. The refinement tells
+// plants by their greenness in all of them.
+constexpr std::array<Chain, 5> kChains = {{
+    {"agricolmap", "paper", DataTerm::kExgHeight,
+     "the paper's chain: flow on Excess Green and height, vote, affine, CPD"},
+    {"agricolmap-rgb", "paper", DataTerm::kRgb, "the paper's chain with its flow on colours"},
+    {"agricolmap-exg", "paper", DataTerm::kExg,
+     "the paper's chain with its flow on Excess Green alone"},
+    {"agricolmap-height", "paper", DataTerm::kHeight,
+     "the paper's chain with its flow on height alone"},
+    {"default", "default", DataTerm::kExgHeight, "the product's default preset"},
+}};
+
+class Product : public Method {
+ public:
+  explicit Product(const Chain& chain) : chain_(chain) {}
+  std::string name() const override { return std::string(chain_.name); }
+  std::string about() const override { return std::string(chain_.about); }
+
+ protected:
+  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
+    RegistrationOptions options = preset(std::string(chain_.preset));
+    options.prior = input.prior;
+    options.flow.describe.term = chain_.term;
+    const Registration result =
+        registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
+    fillFrom(result, input, outcome);
+    outcome.has_matches = options.association == AssociationKind::kFlow;
+  }
+
+ private:
+  Chain chain_;
+};
+
+}  // namespace
+
+void fillFrom(const Registration& result, const MethodInput& input, MethodOutcome& outcome) {
+  outcome.accepted = result.verdict.status == Status::kAccepted;
+  if (!outcome.accepted) outcome.why = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
+  if (result.has_transform) outcome.fixed_from_moving = result.fixed_from_moving;
+  double inliers = 0.0;
+  for (const auto& [name, value] : result.association.counts) {
+    if (name == "inliers") inliers = value;
+  }
+  setMatches(result.frames, input, result.association.all_matches,
+             static_cast<std::size_t>(inliers), outcome);
+}
+
+std::vector<std::string> productNames() {
+  std::vector<std::string> names;
+  for (const Chain& chain : kChains) names.emplace_back(chain.name);
+  return names;
+}
+
+std::unique_ptr<Method> makeProduct(const std::string& name) {
+  for (const Chain& chain : kChains) {
+    if (chain.name == name) return std::make_unique<Product>(chain);
+  }
+  return nullptr;
+}
+
+}  // namespace agricolmap::compare
