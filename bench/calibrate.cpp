@@ -52,7 +52,7 @@ Calibration calibrate(const Arguments& arguments) {
       samplesOf(readAll(arguments.inputs, "fitted to", made.origin), arguments.preset, about);
   made.without_answer = samples.without_answer;
   made.solvable_without = samples.solvable_without;
-  made.model = fitLogistic(samples.features, samples.right, arguments.ridge);
+  made.model = fitLogistic(samples.features, samples.right, arguments.ridge, featureSigns());
   const std::vector<Statement> unseen = crossValidate(samples, arguments.folds, arguments.ridge);
   made.threshold = chooseThreshold(unseen, arguments.margin);
   addSet(made, "fit", statementsOf(samples, made.model));

@@ -57,6 +57,14 @@ CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string
   return samples;
 }
 
+Eigen::VectorXd featureSigns() {
+  Eigen::VectorXd signs(kVerdictFeatures);
+  for (std::size_t i = 0; i < kVerdictFeatures; ++i) {
+    signs(static_cast<Eigen::Index>(i)) = kVerdictFeatureSigns[i];
+  }
+  return signs;
+}
+
 std::vector<Statement> statementsOf(const CalibrationSamples& samples, const LogisticModel& model) {
   std::vector<Statement> statements;
   for (Eigen::Index i = 0; i < samples.features.rows(); ++i) {
@@ -81,7 +89,7 @@ std::vector<Statement> crossValidate(const CalibrationSamples& samples, int fold
     }
     if (left_out.empty()) continue;
     const LogisticModel model =
-        fitLogistic(samples.features(rest, Eigen::all), samples.right(rest), ridge);
+        fitLogistic(samples.features(rest, Eigen::all), samples.right(rest), ridge, featureSigns());
     for (const Eigen::Index i : left_out) {
       statements[static_cast<std::size_t>(i)] = {
           model.probability(samples.features.row(i).transpose()), samples.right(i) > 0.5};

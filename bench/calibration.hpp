@@ -36,6 +36,8 @@ CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string
 std::vector<Statement> crossValidate(const CalibrationSamples& samples, int folds, double ridge);
 /// What a model says about samples.
 std::vector<Statement> statementsOf(const CalibrationSamples& samples, const LogisticModel& model);
+/// kVerdictFeatureSigns as numbers.
+Eigen::VectorXd featureSigns();
 
 /// What one set of statements is worth.
 struct CalibrationQuality {

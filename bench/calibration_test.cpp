@@ -42,6 +42,15 @@ TEST(Logistic, RecoversTheModelThatDrewTheData) {
   EXPECT_NEAR(model.weights(2), 0.02, 0.002);
 }
 
+TEST(Logistic, AWeightOfTheWrongSignIsLeftOut) {
+  const Drawn drawn = draw(20000);
+  const Eigen::Vector3d signs(1.0, 1.0, 1.0);  // the second feature's true weight is negative
+  const LogisticModel model = fitLogistic(drawn.features, drawn.right, 1e-3, signs);
+  EXPECT_GT(model.weights(0), 0.5);
+  EXPECT_EQ(model.weights(1), 0.0);
+  EXPECT_GT(model.weights(2), 0.005);
+}
+
 TEST(Logistic, StaysFiniteWhenTheKindsSeparate) {
   Eigen::MatrixXd x(6, 1);
   x << -3.0, -2.0, -1.0, 1.0, 2.0, 3.0;

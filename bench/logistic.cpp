@@ -21,44 +21,10 @@ std::vector<Statement> sorted(std::vector<Statement> statements) {
   return statements;
 }
 
-ReliabilityBin binOf(const std::vector<Statement>& all, std::size_t begin, std::size_t end) {
-  ReliabilityBin bin;
-  bin.low = all[begin].probability;
-  bin.high = all[end - 1].probability;
-  bin.count = end - begin;
-  for (std::size_t i = begin; i < end; ++i) {
-    bin.right += all[i].right ? 1 : 0;
-    bin.mean_probability += all[i].probability;
-  }
-  bin.mean_probability /= static_cast<double>(bin.count);
-  bin.interval = wilsonInterval(bin.right, bin.count);
-  return bin;
-}
-
-}  // namespace
-
-double LogisticModel::probability(const Eigen::VectorXd& features) const {
-  return logistic(logit(features));
-}
-
-LogisticModel fitLogistic(const Eigen::MatrixXd& features, const Eigen::VectorXd& right,
-                          double ridge) {
-  const Eigen::Index n = features.rows();
-  const Eigen::Index k = features.cols();
-  if (n == 0 || right.sum() == 0.0 || right.sum() == static_cast<double>(n)) {
-    throw InputError("a regression needs right and wrong answers; there are none of one kind");
-  }
-  const Eigen::RowVectorXd mean = features.colwise().mean();
-  Eigen::RowVectorXd spread =
-      ((features.rowwise() - mean).colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt();
-  for (double& s : spread) s = std::max(s, 1e-9);
-  Eigen::MatrixXd design(n, k + 1);
-  design.col(0).setOnes();
-  design.rightCols(k) = (features.rowwise() - mean).array().rowwise() / spread.array();
-  Eigen::VectorXd penalty = Eigen::VectorXd::Constant(k + 1, ridge);
-  penalty(0) = 0.0;
-
-  Eigen::VectorXd beta = Eigen::VectorXd::Zero(k + 1);
+/// Minimises −log likelihood + ½ Σ penalty · weight² by Newton's method with step halving.
+Eigen::VectorXd penalisedFit(const Eigen::MatrixXd& design, const Eigen::VectorXd& right,
+                             const Eigen::VectorXd& penalty) {
+  Eigen::VectorXd beta = Eigen::VectorXd::Zero(design.cols());
   const auto cost = [&](const Eigen::VectorXd& b) {
     // −log likelihood, log(1 + e^z) − y z, safe for large |z|.
     const Eigen::ArrayXd z = (design * b).array();
@@ -84,6 +50,55 @@ LogisticModel fitLogistic(const Eigen::MatrixXd& features, const Eigen::VectorXd
     const bool done = now - next < 1e-12 * (1.0 + std::abs(now));
     now = next;
     if (done) break;
+  }
+  return beta;
+}
+
+ReliabilityBin binOf(const std::vector<Statement>& all, std::size_t begin, std::size_t end) {
+  ReliabilityBin bin;
+  bin.low = all[begin].probability;
+  bin.high = all[end - 1].probability;
+  bin.count = end - begin;
+  for (std::size_t i = begin; i < end; ++i) {
+    bin.right += all[i].right ? 1 : 0;
+    bin.mean_probability += all[i].probability;
+  }
+  bin.mean_probability /= static_cast<double>(bin.count);
+  bin.interval = wilsonInterval(bin.right, bin.count);
+  return bin;
+}
+
+}  // namespace
+
+double LogisticModel::probability(const Eigen::VectorXd& features) const {
+  return logistic(logit(features));
+}
+
+LogisticModel fitLogistic(const Eigen::MatrixXd& features, const Eigen::VectorXd& right,
+                          double ridge, const Eigen::VectorXd& signs) {
+  const Eigen::Index n = features.rows();
+  const Eigen::Index k = features.cols();
+  if (n == 0 || right.sum() == 0.0 || right.sum() == static_cast<double>(n)) {
+    throw InputError("a regression needs right and wrong answers; there are none of one kind");
+  }
+  const Eigen::RowVectorXd mean = features.colwise().mean();
+  Eigen::RowVectorXd spread =
+      ((features.rowwise() - mean).colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt();
+  for (double& s : spread) s = std::max(s, 1e-9);
+  Eigen::MatrixXd design(n, k + 1);
+  design.col(0).setOnes();
+  design.rightCols(k) = (features.rowwise() - mean).array().rowwise() / spread.array();
+  Eigen::VectorXd penalty = Eigen::VectorXd::Constant(k + 1, ridge);
+  penalty(0) = 0.0;
+  Eigen::VectorXd beta = penalisedFit(design, right, penalty);
+  // One at a time, the strongest first: of two features that say the same, one may then do.
+  while (signs.size() == k) {
+    Eigen::Index worst = 0;
+    const double contradiction = beta.tail(k).cwiseProduct(signs).minCoeff(&worst);
+    if (contradiction >= 0.0) break;
+    design.col(worst + 1).setZero();
+    beta = penalisedFit(design, right, penalty);
+    beta(worst + 1) = 0.0;
   }
   LogisticModel model;
   model.weights = beta.tail(k).cwiseQuotient(spread.transpose());

@@ -21,8 +21,11 @@ struct LogisticModel {
 /// Maximum likelihood with the penalty `ridge`/2 · Σ(weight · deviation of its feature)², by
 /// Newton's method. One row of `features` per sample; `right` has zeros and ones. Throws InputError
 /// when there are no samples of one kind.
+///
+/// `signs`, one per feature or none at all: a feature whose weight would have the other sign is
+/// left out (weight 0), so that more evidence never makes a registration less probable.
 LogisticModel fitLogistic(const Eigen::MatrixXd& features, const Eigen::VectorXd& right,
-                          double ridge);
+                          double ridge, const Eigen::VectorXd& signs = {});
 
 /// A probability that was stated, and what came true.
 struct Statement {

@@ -79,9 +79,7 @@ class Locator {
     linear_ = m.leftCols<3>().cast<float>();
     shift_ = m.col(3).cast<float>();
   }
-  /// Never inlined: the compiler makes several copies of a parallel loop, which round products and
-  /// sums differently, and which of them runs depends on how the threads share the work.
-  [[gnu::noinline]] bool locate(const Eigen::Vector3f& p, Located& out) const {
+  bool locate(const Eigen::Vector3f& p, Located& out) const {
     const Eigen::Vector3f q = linear_ * p + shift_;
     if (!(q.x() >= 0.0F && q.y() >= 0.0F && q.x() < cols_ && q.y() < rows_)) return false;
     out.u = q.x();

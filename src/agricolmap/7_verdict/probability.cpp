@@ -17,8 +17,8 @@ struct Model {
   VerdictFeatures weights;
 };
 // As agricolmap_calibrate printed them (docs/results/locating/calibration*/calibration.json).
-constexpr Model kAll = {-15.0271, {2.6810, 0.6885, -1.2729, 3.7897, -2.1902, -5.7947, 2.3586}};
-constexpr Model kPlane = {-11.4560, {3.4369, 0.6206, -0.7847, 3.9989, -2.3763, 0.0000, -0.0150}};
+constexpr Model kAll = {-19.0314, {3.5448, 0.1172, 0.0000, 4.2849, -1.4576, -7.4809, 3.7044}};
+constexpr Model kPlane = {-10.9878, {4.9948, 0.1509, 0.1347, 3.3235, -1.6839, 0.0000, 1.0622}};
 
 double probabilityOf(const VerdictFacts& facts, const Model& model) {
   const VerdictFeatures features = verdictFeatures(facts);

@@ -27,6 +27,9 @@ inline constexpr std::array<const char*, kVerdictFeatures> kVerdictFeatureNames 
     "log_significance", "log_plane_error",    "log_height_error",
     "log_overlap"};
 
+/// Whether more of a feature speaks for the registration (1) or against it (−1).
+inline constexpr std::array<int, kVerdictFeatures> kVerdictFeatureSigns = {1, 1, 1, 1, -1, -1, 1};
+
 /// Of the features, the one that the plane has nothing to do with.
 inline constexpr std::size_t kHeightFeature = 5;
 

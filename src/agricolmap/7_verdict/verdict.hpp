@@ -19,7 +19,7 @@ enum class Status { kAccepted, kRejected, kAmbiguous };
 const char* toString(Status status);
 
 struct VerdictOptions {
-  double min_probability = 0.7;  ///< that the registration is right in the plane
+  double min_probability = 0.8;  ///< that the registration is right in the plane
   double min_uniqueness = 1.2;   ///< least ratio of the peak to the next one, whatever else speaks
   double rival = 0.8;            ///< placements of this share of the best significance are rivals
   double min_fit = 8.0;          ///< significance from which on rivals are more than chance

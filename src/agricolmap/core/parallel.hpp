@@ -63,6 +63,19 @@ class ForkJoin {
 #endif
 };
 
+/// The one place where a body runs. Inlined into oneTBB's templates it would be compiled several
+/// times, with roundings that differ (fused multiply-adds), and which of the copies runs depends on
+/// how work is shared out: results would differ from run to run.
+template <typename Body>
+#if defined(__clang__)
+[[gnu::noinline]]
+#else
+[[gnu::noipa]]
+#endif
+void runItems(const Body& body, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i != end; ++i) body(i);
+}
+
 }  // namespace detail
 
 /// Calls `body(i)` for i in [0, count) from several threads. `body` must only write what belongs to
@@ -74,7 +87,7 @@ void parallelFor(std::size_t count, const Body& body, std::size_t grain = 1) {
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       [[maybe_unused]] const detail::ForkJoin::Task task(call);
                       throwIfInterrupted();
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                      detail::runItems(body, range.begin(), range.end());
                     });
 }
 
