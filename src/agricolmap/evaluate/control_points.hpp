@@ -86,11 +86,11 @@ std::size_t neededPairs(ControlModel model);
 ///
 /// Starts from the minimal fit whose residuals' middle order statistic is smallest (least median of
 /// squares, Rousseeuw 1984), then reweights with Tukey's biweight at that fit's deviation and once
-/// more at the deviation found so (horizontal and vertical deviations apart: heights are seldom
-/// picked as well as places). Just under half of many pairs may be wrong; of six or seven, one; of
-/// fewer, none. `source` is named in messages. Deterministic. Throws InputError when there are too
-/// few control pairs, or when they lie on a spot or a line (for the affine: in a plane), or fit
-/// only a mirrored map.
+/// more at the deviation found so (horizontal and vertical deviations apart: heights are never
+/// picked better than places, and often worse). Just under half of many pairs may be wrong; of six
+/// or seven, one; of fewer, none. `source` is named in messages. Deterministic. Throws InputError
+/// when there are too few control pairs, or when they lie on a spot or a line (for the affine: in a
+/// plane), or fit only a mirrored map.
 ControlEstimate estimateFromPairs(std::span<const ControlPair> pairs, const ControlOptions& options,
                                   const std::string& source);
 

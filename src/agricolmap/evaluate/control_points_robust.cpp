@@ -103,10 +103,11 @@ PickSigmas ControlFit::sigmas(const Eigen::Affine3d& local) const {
   const bool scales = options_.model == ControlModel::kScales;
   const double taken_plane = scales ? 2.5 : 4.0;  // parameters per coordinate
   const double taken_line = scales ? 3.0 : 4.0;
-  return {std::max(kLeastPickSigma,
-                   quantile(horizontal) / kMedianPlane * std::sqrt(n / (n - taken_plane))),
-          std::max(kLeastPickSigma,
-                   quantile(vertical) / kMedianLine * std::sqrt(n / (n - taken_line)))};
+  const double plane = std::max(
+      kLeastPickSigma, quantile(horizontal) / kMedianPlane * std::sqrt(n / (n - taken_plane)));
+  const double line = quantile(vertical) / kMedianLine * std::sqrt(n / (n - taken_line));
+  // Nobody picks heights better than places, and half as many numbers tell less of them.
+  return {plane, std::max(plane, line)};
 }
 
 std::optional<Eigen::Affine3d> ControlFit::minimalFit(
