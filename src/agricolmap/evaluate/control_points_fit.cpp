@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -103,17 +102,18 @@ std::optional<Eigen::Affine3d> fitPairs(const PairPlaces& pairs, std::span<const
   }
   const PairSpread spread = spreadOf(pairs, weights);
   if (!(spread.thinnest > kLeastVolume * spread.widest)) return std::nullopt;
-  const Eigen::Affine3d fit = fitAffine(pairs.moving, pairs.fixed, weights);
+  Eigen::Affine3d fit = fitAffine(pairs.moving, pairs.fixed, weights);
   if (!(fit.linear().determinant() > 0.0)) return std::nullopt;
   return fit;
 }
 
 ControlParts splitLinear(const Eigen::Matrix3d& linear) {
-  const Eigen::HouseholderQR<Eigen::Matrix3d> qr(linear);
-  const Eigen::Matrix3d upper = qr.matrixQR().triangularView<Eigen::Upper>();
-  const Eigen::Vector3d signs = upper.diagonal().cwiseSign();
-  const Eigen::Matrix3d r = qr.householderQ() * Eigen::Matrix3d(signs.asDiagonal());
-  const Eigen::Matrix3d u = signs.asDiagonal() * upper;
+  // Gram-Schmidt, which keeps the moving x axis and the plane of x and y.
+  Eigen::Matrix3d r;
+  r.col(0) = linear.col(0).normalized();
+  r.col(2) = linear.col(0).cross(linear.col(1)).normalized();
+  r.col(1) = r.col(2).cross(r.col(0));
+  const Eigen::Matrix3d u = r.transpose() * linear;
   ControlParts parts;
   parts.scale = u.diagonal();
   parts.shear = {u(0, 1) / u(1, 1), u(0, 2) / u(2, 2), u(1, 2) / u(2, 2)};
