@@ -226,7 +226,7 @@ std::optional<fs::path> truthOf(const fs::path& row, const CropFolder& crop,
 
 std::string cropName(const fs::path& dir, const fs::path& folder, const CropFolder& crop,
                      const fs::path& row) {
-  const std::string key = crop.drones.size() > 1 ? cropKey(row.filename().string()) : "";
+  std::string key = crop.drones.size() > 1 ? cropKey(row.filename().string()) : "";
   if (folder != dir) {
     const fs::path relative = folder.lexically_relative(dir);
     return (key.empty() ? relative : relative / key).generic_string();
