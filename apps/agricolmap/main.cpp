@@ -54,8 +54,9 @@ ExitCode run(int argc, char** argv) {
   app.add_flag("--overwrite", globals.overwrite, "Replace results that exist");
   const std::vector<CommandSlot> commands = {
       addRegisterCommand(app, globals), addSimulateCommand(app, globals),
-      addEvaluateCommand(app, globals), addImportCommand(app, globals),
-      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
+      addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
+      addImportCommand(app, globals),   addInfoCommand(app, globals),
+      addDocumentCommand(app, globals)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {

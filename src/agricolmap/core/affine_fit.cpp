@@ -36,6 +36,11 @@ Eigen::Vector3d mean(std::size_t count, const Value& value) {
   return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
+/// The linear map with the least sum of squares between centred points.
+Eigen::Matrix3d linearFrom(const Moments& sums) {
+  return sums.from_from.ldlt().solve(sums.to_from.transpose()).transpose();
+}
+
 }  // namespace
 
 Eigen::Vector3d meanPoint(const Cloud& cloud) {
@@ -66,8 +71,33 @@ Eigen::Affine3d fitAffine(const Cloud& cloud, const std::vector<Eigen::Vector3d>
         return part;
       });
   Eigen::Affine3d affine = Eigen::Affine3d::Identity();
-  affine.linear() = sums.from_from.ldlt().solve(sums.to_from.transpose()).transpose();
+  affine.linear() = linearFrom(sums);
   affine.translation() = to - affine.linear() * (cloud.origin + from);
+  return affine;
+}
+
+Eigen::Affine3d fitAffine(std::span<const Eigen::Vector3d> from,
+                          std::span<const Eigen::Vector3d> targets,
+                          std::span<const double> weights) {
+  double total = 0.0;
+  Eigen::Vector3d mean_from = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_to = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    total += weights[i];
+    mean_from += weights[i] * from[i];
+    mean_to += weights[i] * targets[i];
+  }
+  mean_from /= total;
+  mean_to /= total;
+  Moments sums;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Eigen::Vector3d p = from[i] - mean_from;
+    sums.from_from += weights[i] * p * p.transpose();
+    sums.to_from += weights[i] * (targets[i] - mean_to) * p.transpose();
+  }
+  Eigen::Affine3d affine = Eigen::Affine3d::Identity();
+  affine.linear() = linearFrom(sums);
+  affine.translation() = mean_to - affine.linear() * mean_from;
   return affine;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <span>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
@@ -16,5 +17,11 @@ Eigen::Vector3d meanPoint(const Cloud& cloud);
 /// themselves are mapped well all the same. Throws InputError when there are fewer than four points
 /// or the numbers differ.
 Eigen::Affine3d fitAffine(const Cloud& cloud, const std::vector<Eigen::Vector3d>& targets);
+
+/// The same for some hand-picked points with weights (>= 0, one each), in double throughout. Both
+/// sides should be near zero; the caller sees to it that the points with weight span a volume.
+Eigen::Affine3d fitAffine(std::span<const Eigen::Vector3d> from,
+                          std::span<const Eigen::Vector3d> targets,
+                          std::span<const double> weights);
 
 }  // namespace agricolmap
