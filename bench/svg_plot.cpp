@@ -27,6 +27,10 @@ const char* classOf(PlotColour colour) {
       return "orange";
     case PlotColour::kRed:
       return "red";
+    case PlotColour::kGreen:
+      return "green";
+    case PlotColour::kPurple:
+      return "purple";
     case PlotColour::kGrey:
       return "grey";
   }
@@ -44,6 +48,8 @@ text { font: 12px "DejaVu Sans", Verdana, sans-serif; fill: #6e7781; }
 .blue { stroke: #2477c9; } .band.blue, .dot.blue { fill: #2477c9; }
 .orange { stroke: #d98200; } .band.orange, .dot.orange { fill: #d98200; }
 .red { stroke: #d13438; } .band.red, .dot.red { fill: #d13438; }
+.green { stroke: #009e73; } .band.green, .dot.green { fill: #009e73; }
+.purple { stroke: #b0609a; } .band.purple, .dot.purple { fill: #b0609a; }
 .grey { stroke: #8b949e; } .band.grey, .dot.grey { fill: #8b949e; }
 .dot, .band { stroke: none; }
 @media (prefers-color-scheme: dark) { text { fill: #b1bac4; } }
@@ -95,10 +101,12 @@ std::string drawAxes(const Canvas& canvas, const PlotPanel& panel, const PlotAxi
     if (first) svg += text(canvas.left() - 7.0, canvas.row(tick) + 4.0, "end", tickText(tick));
   }
   double free_from = -1e9;
-  for (const double tick : panel.x.ticks) {
-    const double at = canvas.column(tick);
+  for (std::size_t i = 0; i < panel.x.ticks.size(); ++i) {
+    const double at = canvas.column(panel.x.ticks[i]);
     svg += segment(at, bottom, at, bottom + 5.0, "frame");
-    const std::string label = tickText(tick);
+    const std::string label = panel.x.tick_labels.size() == panel.x.ticks.size()
+                                  ? panel.x.tick_labels[i]
+                                  : tickText(panel.x.ticks[i]);
     const double half = 0.5 * kLetter * static_cast<double>(label.size()) + 2.0;
     if (at - half < free_from) continue;
     svg += text(at, bottom + 18.0, "middle", label);

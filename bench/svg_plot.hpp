@@ -15,7 +15,7 @@ struct PlotPoint {
   double high = 0.0;
 };
 
-enum class PlotColour { kBlue, kOrange, kRed, kGrey };
+enum class PlotColour { kBlue, kOrange, kRed, kGreen, kPurple, kGrey };
 
 struct PlotLine {
   std::string label;  ///< in the legend, which names each label once
@@ -29,7 +29,8 @@ struct PlotAxis {
   std::string label;  ///< with the unit
   double low = 0.0;
   double high = 1.0;
-  std::vector<double> ticks;  ///< labelled where there is room
+  std::vector<double> ticks;                  ///< labelled where there is room
+  std::vector<std::string> tick_labels = {};  ///< as many, or none: the numbers themselves
 };
 
 struct PlotPanel {

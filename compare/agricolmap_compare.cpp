@@ -13,7 +13,12 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/io/file_sink.hpp"
+#include "agricolmap/io/staged_output.hpp"
 #include "agricolmap/pipeline/options.hpp"
+#include "page/comparison_page.hpp"
+#include "page/statistics.hpp"
+#include "page/summary.hpp"
 #include "pair_maker.hpp"
 #include "revision.hpp"
 #include "runner/campaign.hpp"
@@ -32,6 +37,7 @@ struct Arguments {
   int jobs = 1;
   std::string shared = "../shared";
   std::string scratch;
+  std::string docs;
   bool quick = false;
   bool page_only = false;
 };
@@ -113,6 +119,39 @@ CampaignOptions campaignOf(const Arguments& arguments) {
   return options;
 }
 
+void writeResult(const std::filesystem::path& path, const std::string& text) {
+  StagedFile file(path, true);
+  writeText(file.path(), text);
+  file.commit();
+}
+
+/// Tables and page beside rows.csv, and with --docs the page of the repository.
+void writePages(const Arguments& arguments) {
+  const std::filesystem::path folder = arguments.output;
+  std::string identity;
+  const std::vector<Row> rows = readRows(folder / "rows.csv", identity);
+  writeResult(folder / "success_translation.csv", successCsv(rows, "translation"));
+  writeResult(folder / "success_heading.csv", successCsv(rows, "heading"));
+  writeResult(folder / "accuracy.csv", accuracyCsv(rows));
+  writeResult(folder / "inliers.csv", inliersCsv(rows));
+  writeResult(folder / "times.csv", timesCsv(rows));
+  const Document document = comparisonDocument(rows, identity);
+  const std::vector<Figure> figures = successFigures(rows);
+  for (const Figure& figure : figures) writeResult(folder / figure.file_name, figure.svg);
+  writeResult(folder / "comparison.html", toHtml(document));
+  if (!arguments.docs.empty()) {
+    const std::filesystem::path docs = arguments.docs;
+    std::error_code error;
+    std::filesystem::create_directories(docs / "images" / "comparison", error);
+    if (error) throw OutputError(fmt::format("{}: {}", arguments.docs, error.message()));
+    for (const Figure& figure : figures) {
+      writeResult(docs / "images" / "comparison" / figure.file_name, figure.svg);
+    }
+    writeResult(docs / "comparison.md", toMarkdown(document, "images/comparison"));
+  }
+  fmt::print("{}\n\n{}\n", summarySentences(rows), (folder / "comparison.html").string());
+}
+
 void addFlags(CLI::App& app, Arguments& arguments) {
   app.add_option("-o,--output", arguments.output, "Folder for rows.csv, tables and page")
       ->required();
@@ -134,6 +173,8 @@ void addFlags(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 1024));
   app.add_option("--shared", arguments.shared, "Folder with the real data [../shared]");
   app.add_option("--scratch", arguments.scratch, "Folder for clouds in the meantime [--output]");
+  app.add_option("--docs", arguments.docs,
+                 "Write comparison.md and its pictures into this folder, too");
   app.add_flag("--quick", arguments.quick, "Small fields, few settings: minutes");
   app.add_flag("--page-only", arguments.page_only, "Only write tables and page from rows.csv");
   app.footer(
@@ -169,6 +210,7 @@ int run(int argc, char** argv) {
     RowTable table(folder / "rows.csv", identityOf(arguments));
     runCampaign(options, table);
   }
+  writePages(arguments);
   return 0;
 }
 
