@@ -23,6 +23,7 @@ struct PlotLine {
   std::vector<PlotPoint> points;  ///< in order of x
   bool marks = true;              ///< a dot at each point
   bool dashed = false;
+  bool whiskers = false;  ///< intervals as bars instead of a band: where lines lie close together
 };
 
 struct PlotAxis {

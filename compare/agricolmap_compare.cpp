@@ -167,7 +167,7 @@ void addFlags(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 100000));
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first pair [80001]")
       ->check(CLI::Range(0, 1000000000));
-  app.add_option("--time-limit", arguments.time_limit, "A run is ended after this [60 s; quick: 6]")
+  app.add_option("--time-limit", arguments.time_limit, "A run is ended after this [60 s; quick: 8]")
       ->check(CLI::Range(0.5, 1e5));
   app.add_option("--jobs", arguments.jobs, "Runs at a time, each on one thread [1]")
       ->check(CLI::Range(1, 1024));
@@ -193,10 +193,12 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
   }
   if (arguments.quick && app.count("--datasets") == 0) {
-    arguments.datasets = {"sugar-beet-10m", "semireal-sugarbeet"};
+    arguments.datasets = {"sugar-beet-10m", "real-soybean"};
   }
+  if (arguments.quick && app.count("--experiments") == 0)
+    std::erase(arguments.experiments, "joint");
   if (arguments.pairs < 0) arguments.pairs = arguments.quick ? 1 : 10;
-  if (arguments.time_limit < 0.0) arguments.time_limit = arguments.quick ? 6.0 : 60.0;
+  if (arguments.time_limit < 0.0) arguments.time_limit = arguments.quick ? 8.0 : 60.0;
   installInterruptHandler();
   const std::filesystem::path folder = arguments.output;
   if (!arguments.page_only) {

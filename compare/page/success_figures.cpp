@@ -48,12 +48,16 @@ PlotLine lineOf(const std::vector<Row>& rows, const std::vector<double>& setting
   line.label = method;
   line.colour = kColours[colour];
   line.dashed = method.ends_with("oracle-scale");
+  line.whiskers = true;
+  // Aside of each other, or equal shares would hide all but one.
+  const double aside = 0.09 * (static_cast<double>(colour) - 2.0);
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const Group group = groupOf(
         rows, [&](const Row& row) { return row.method == method && row.setting == settings[i]; });
     if (group.runs == 0) continue;
     const campaign::Interval interval = group.interval();
-    line.points.push_back({static_cast<double>(i), group.share(), interval.low, interval.high});
+    line.points.push_back(
+        {static_cast<double>(i) + aside, group.share(), interval.low, interval.high});
   }
   return line;
 }
@@ -80,8 +84,6 @@ PlotPanel panelOf(const std::vector<Row>& rows, const Family& family, double sca
     PlotLine line = lineOf(here, settings, family.methods[i], i);
     if (!line.points.empty()) panel.lines.push_back(std::move(line));
   }
-  // The default preset last: on top of the others.
-  std::reverse(panel.lines.begin(), panel.lines.end());
   return panel;
 }
 
@@ -109,7 +111,7 @@ std::vector<Figure> successFigures(const std::vector<Row>& rows) {
             fmt::format("Success over {} error, {}: {}", experiment, kind, family.title);
         PlotFigure figure;
         figure.description = caption;
-        figure.note = kind + ", bands: 95 % intervals; settings at equal distances";
+        figure.note = kind + ", bars: 95 % intervals; settings at equal distances";
         figure.y = {"success", 0.0, 1.0, {0.0, 0.25, 0.5, 0.75, 1.0}, {}};
         for (const double scale : scales) {
           figure.panels.push_back(panelOf(here, family, scale, unit));

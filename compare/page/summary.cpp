@@ -73,8 +73,8 @@ std::string behindSentence(std::vector<Contest> contests) {
   const auto clear = std::count_if(contests.begin(), contests.end(), [](const Contest& one) {
     return one.ours.interval().high < one.best.interval().low;
   });
-  std::string text = fmt::format(
-      "It is behind at {}, at {} of them by more than the intervals: ", contests.size(), clear);
+  std::string text =
+      fmt::format("It is behind at {} ({} of them beyond the intervals): ", contests.size(), clear);
   for (std::size_t i = 0; i < std::min(kNamed, contests.size()); ++i) {
     const Contest& one = contests[i];
     text += fmt::format("{}{} ({} against {} of {})", i == 0 ? "" : "; ", one.place,

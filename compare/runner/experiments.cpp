@@ -26,9 +26,9 @@ constexpr double kSmallHeading = 0.01;
 
 std::vector<Curve> translationCurves(bool quick) {
   std::vector<Curve> curves;
-  for (const double scale : quick ? std::vector<double>{0.0, 0.2} : kScales) {
+  for (const double scale : quick ? std::vector<double>{0.0} : kScales) {
     Curve curve{"translation", scale, true, {}};
-    for (const double size : quick ? std::vector<double>{0.05, 0.5, 5.0} : kTranslations) {
+    for (const double size : quick ? std::vector<double>{0.05, 5.0} : kTranslations) {
       curve.cells.push_back({"translation", size, size, 0.0, scale});
     }
     curves.push_back(curve);
@@ -40,7 +40,7 @@ std::vector<Curve> headingCurves(bool quick) {
   std::vector<Curve> curves;
   for (const double scale : quick ? std::vector<double>{0.0} : kScales) {
     Curve curve{"heading", scale, true, {}};
-    for (const double size : quick ? std::vector<double>{0.1, 0.2} : kHeadings) {
+    for (const double size : quick ? std::vector<double>{0.2} : kHeadings) {
       curve.cells.push_back({"heading", size, 0.0, size, scale});
     }
     curves.push_back(curve);
@@ -60,7 +60,7 @@ std::vector<Curve> jointCurves(bool quick) {
 std::vector<Curve> accuracyCurves(bool quick) {
   Curve curve{"accuracy", 0.0, true, {}};
   for (const int percent :
-       quick ? std::vector<int>{0, 10} : std::vector<int>{0, 5, 10, 15, 20, 25, 30}) {
+       quick ? std::vector<int>{10} : std::vector<int>{0, 5, 10, 15, 20, 25, 30}) {
     const double scale = 0.01 * percent;
     curve.cells.push_back({"accuracy", scale, kSmallTranslation, kSmallHeading, scale});
   }
