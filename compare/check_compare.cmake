@@ -30,7 +30,7 @@ foreach(name IN ITEMS success_translation.csv success_heading.csv accuracy.csv i
   endif()
 endforeach()
 file(READ ${FOLDER}/comparison.html page)
-foreach(text IN ITEMS "the default preset" "<svg" "paper: 0.05 m / 0.09°" "icp-affine")
+foreach(text IN ITEMS "the default preset" "<svg" "paper, real data: 0.05 m / 0.09°" "icp-affine")
   string(FIND "${page}" "${text}" place)
   if(place LESS 0)
     message(FATAL_ERROR "the page lacks ${text}")

@@ -15,12 +15,17 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// `0.95 (0.76–0.99)`, with a mark where not all runs were made.
+/// Where not all runs were made, or some were ended.
+std::string marks(const Group& group) {
+  return fmt::format("{}{}", group.skipped > 0 ? " *" : "", group.timeouts > 0 ? " †" : "");
+}
+
+/// `0.95 (0.76–0.99)` and marks.
 std::string successText(const Group& group) {
   if (group.runs == 0) return "–";
   const campaign::Interval interval = group.interval();
   return fmt::format("{} ({:.2f}–{:.2f}){}", shareText(group.share()), interval.low, interval.high,
-                     group.skipped > 0 ? " *" : "");
+                     marks(group));
 }
 
 RowTest inCell(const std::string& method, double setting) {
@@ -62,7 +67,8 @@ void addSuccess(const std::vector<Row>& rows, Document& document) {
       "three. Translation: in a random direction, heading exact; heading: of random sign, position "
       "exact. Scale errors stretch or shrink x and y by signs of their own. A star marks cells "
       "with runs that were not made, as the method had failed on all pairs at three smaller "
-      "errors; they count as failures. The paper's figures are those of its fig. correct_reg_rate "
+      "errors; they count as failures. A dagger marks cells with runs that the time limit ended. "
+      "The paper's figures are those of its fig. correct_reg_rate "
       "without scale error, on real data, as released with its code; it gives no others as "
       "numbers."});
   for (Figure& figure : successFigures(rows)) document.blocks.emplace_back(std::move(figure));
@@ -114,7 +120,7 @@ void addJoint(const std::vector<Row>& rows, Document& document) {
 /// e_t / e_R / e_s as the paper writes them, our RMS and how many pairs they are from.
 std::string accuracyText(const Group& group) {
   if (group.runs == 0) return "–";
-  if (group.successes == 0) return fmt::format("fail (0 of {})", group.runs);
+  if (group.successes == 0) return fmt::format("fail (0 of {}){}", group.runs, marks(group));
   return fmt::format("{:.3f} m / {:.2f}° / {:.1f} %; RMS {:.0f} mm, plane {:.0f} mm ({} of {})",
                      group.e_t, group.e_r / kDegree, 100.0 * group.e_s, 1000.0 * group.rms,
                      1000.0 * group.rms_affine, group.successes, group.runs);

@@ -25,9 +25,13 @@ p { max-width: 46rem; }
 .wide svg { display: block; min-width: 42rem; width: 100%; max-width: 60rem; height: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.3rem 0.6rem; border-bottom: 1px solid var(--rule); text-align: left;
-  vertical-align: top; white-space: nowrap; }
+  vertical-align: top; }
+th { white-space: nowrap; }
+td { min-width: 6.5rem; max-width: 13rem; }
 thead th { background: var(--shade); }
 tbody th { position: sticky; left: 0; background: var(--ground); font-weight: 600; }
+@media (max-width: 40rem) { tbody th { white-space: normal; overflow-wrap: anywhere; min-width: 5rem;
+  max-width: 6.5rem; } }
 .paper { display: block; color: var(--soft); font-size: 0.75rem; }
 .caption { font-weight: 600; margin: 1rem 0 0.4rem; }
 </style>
@@ -36,7 +40,7 @@ tbody th { position: sticky; left: 0; background: var(--ground); font-weight: 60
 std::string cellHtml(const TableCell& cell) {
   std::string text = escapeXml(cell.ours);
   if (!cell.paper.empty()) {
-    text += fmt::format("<span class=\"paper\">paper: {}</span>", escapeXml(cell.paper));
+    text += fmt::format("<span class=\"paper\">paper, real data: {}</span>", escapeXml(cell.paper));
   }
   return text;
 }
@@ -71,7 +75,7 @@ struct HtmlBlock {
 /// Without what parts the cells of a table.
 std::string cellMarkdown(const TableCell& cell) {
   std::string text = cell.ours.empty() ? "–" : cell.ours;
-  if (!cell.paper.empty()) text += fmt::format("<br>paper: {}", cell.paper);
+  if (!cell.paper.empty()) text += fmt::format("<br>paper, real data: {}", cell.paper);
   for (char& c : text) {
     if (c == '|') c = '/';
   }

@@ -100,7 +100,7 @@ TEST(ComparePage, IsOneFileThatNeedsNothingElse) {
   const std::string page = toHtml(comparisonDocument(rows, "version <1>"));
   EXPECT_THAT(page, HasSubstr("version &lt;1&gt;"));
   EXPECT_THAT(page, HasSubstr("<svg"));
-  EXPECT_THAT(page, HasSubstr("paper: 3.9 / 6.7 / 4.8"));
+  EXPECT_THAT(page, HasSubstr("paper, real data: 3.9 / 6.7 / 4.8"));
   for (const char* outside : {"<script", "src=", "href=", "@import", "url("}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
