@@ -5,9 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
+#include <fstream>
 
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/error.hpp"
@@ -22,6 +21,7 @@
 #include "pair_maker.hpp"
 #include "revision.hpp"
 #include "runner/campaign.hpp"
+#include "runner/child_process.hpp"
 
 namespace agricolmap::compare {
 namespace {
@@ -67,14 +67,16 @@ std::filesystem::path methodProgram() {
 
 /// The first words of what `agricolmap_method list` prints.
 std::vector<std::string> methodNamesOf(const std::filesystem::path& program) {
-  const std::string command = fmt::format("'{}' list", program.string());
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
+  const std::filesystem::path listing = std::filesystem::temp_directory_path() /
+                                        fmt::format("agricolmap_compare_{}.list", ::getpid());
+  runChild({program.string(), "list"}, 30.0, listing);
   std::vector<std::string> names;
-  char line[512];
-  while (pipe && std::fgets(line, sizeof line, pipe.get()) != nullptr) {
-    const std::string text = line;
-    names.push_back(text.substr(0, text.find_first_of(" \n")));
+  std::ifstream file(listing);
+  for (std::string line; std::getline(file, line);) {
+    names.push_back(line.substr(0, line.find(' ')));
   }
+  std::error_code ignored;
+  std::filesystem::remove(listing, ignored);
   if (names.empty()) throw InputError(fmt::format("{}: lists no methods", program.string()));
   return names;
 }
