@@ -27,6 +27,10 @@ const char* classOf(PlotColour colour) {
       return "orange";
     case PlotColour::kRed:
       return "red";
+    case PlotColour::kGreen:
+      return "green";
+    case PlotColour::kPurple:
+      return "purple";
     case PlotColour::kGrey:
       return "grey";
   }
@@ -40,12 +44,16 @@ text { font: 12px "DejaVu Sans", Verdana, sans-serif; fill: #6e7781; }
 .frame { fill: none; stroke: #8b949e; stroke-width: 1; }
 .grid { fill: none; stroke: #8b949e; stroke-width: 1; stroke-opacity: 0.3; }
 .line { fill: none; stroke-width: 2; stroke-linejoin: round; }
+.bar { fill: none; stroke-width: 1.5; stroke-opacity: 0.55; }
 .band { stroke: none; fill-opacity: 0.18; }
 .blue { stroke: #2477c9; } .band.blue, .dot.blue { fill: #2477c9; }
 .orange { stroke: #d98200; } .band.orange, .dot.orange { fill: #d98200; }
 .red { stroke: #d13438; } .band.red, .dot.red { fill: #d13438; }
+.green { stroke: #009e73; } .band.green, .dot.green { fill: #009e73; }
+.purple { stroke: #b0609a; } .band.purple, .dot.purple { fill: #b0609a; }
 .grey { stroke: #8b949e; } .band.grey, .dot.grey { fill: #8b949e; }
-.dot, .band { stroke: none; }
+.dot, .bar { fill: none; stroke-width: 1.5; stroke-opacity: 0.55; }
+.band { stroke: none; }
 @media (prefers-color-scheme: dark) { text { fill: #b1bac4; } }
 </style>
 )";
@@ -95,10 +103,12 @@ std::string drawAxes(const Canvas& canvas, const PlotPanel& panel, const PlotAxi
     if (first) svg += text(canvas.left() - 7.0, canvas.row(tick) + 4.0, "end", tickText(tick));
   }
   double free_from = -1e9;
-  for (const double tick : panel.x.ticks) {
-    const double at = canvas.column(tick);
+  for (std::size_t i = 0; i < panel.x.ticks.size(); ++i) {
+    const double at = canvas.column(panel.x.ticks[i]);
     svg += segment(at, bottom, at, bottom + 5.0, "frame");
-    const std::string label = tickText(tick);
+    const std::string label = panel.x.tick_labels.size() == panel.x.ticks.size()
+                                  ? panel.x.tick_labels[i]
+                                  : tickText(panel.x.ticks[i]);
     const double half = 0.5 * kLetter * static_cast<double>(label.size()) + 2.0;
     if (at - half < free_from) continue;
     svg += text(at, bottom + 18.0, "middle", label);
@@ -120,6 +130,7 @@ std::string drawLine(const Canvas& canvas, const PlotLine& line) {
   std::string upper;
   std::string lower;
   std::string dots;
+  std::string bars;
   bool band = false;
   for (const PlotPoint& point : line.points) {
     const double column = canvas.column(point.x);
@@ -127,7 +138,11 @@ std::string drawLine(const Canvas& canvas, const PlotLine& line) {
     upper +=
         fmt::format("{}{:.1f} {:.1f}", upper.empty() ? "M" : "L", column, canvas.row(point.high));
     lower.insert(0, fmt::format("L{:.1f} {:.1f}", column, canvas.row(point.low)));
-    band = band || point.high > point.low;
+    band = band || (point.high > point.low && !line.whiskers);
+    if (line.whiskers && point.high > point.low) {
+      bars += fmt::format("<path class=\"bar {}\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n", colour, column,
+                          canvas.row(point.low), canvas.row(point.high));
+    }
     if (line.marks) {
       dots += fmt::format("<circle class=\"dot {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n",
                           colour, column, canvas.row(point.y));
@@ -137,7 +152,7 @@ std::string drawLine(const Canvas& canvas, const PlotLine& line) {
   if (band) svg += fmt::format("<path class=\"band {}\" d=\"{}{}Z\"/>\n", colour, upper, lower);
   svg += fmt::format("<path class=\"line {}\"{} d=\"{}\"/>\n", colour,
                      line.dashed ? " stroke-dasharray=\"5 4\"" : "", path);
-  return svg + dots;
+  return svg + bars + dots;
 }
 
 /// Each label once, in a row above the panels. `end`: where the row ends.

@@ -15,7 +15,7 @@ struct PlotPoint {
   double high = 0.0;
 };
 
-enum class PlotColour { kBlue, kOrange, kRed, kGrey };
+enum class PlotColour { kBlue, kOrange, kRed, kGreen, kPurple, kGrey };
 
 struct PlotLine {
   std::string label;  ///< in the legend, which names each label once
@@ -23,13 +23,15 @@ struct PlotLine {
   std::vector<PlotPoint> points;  ///< in order of x
   bool marks = true;              ///< a dot at each point
   bool dashed = false;
+  bool whiskers = false;  ///< intervals as bars instead of a band: where lines lie close together
 };
 
 struct PlotAxis {
   std::string label;  ///< with the unit
   double low = 0.0;
   double high = 1.0;
-  std::vector<double> ticks;  ///< labelled where there is room
+  std::vector<double> ticks;                  ///< labelled where there is room
+  std::vector<std::string> tick_labels = {};  ///< as many, or none: the numbers themselves
 };
 
 struct PlotPanel {

@@ -1,10 +1,10 @@
 // agricolmap_method METHOD FIXED MOVING -o RESULT.json: one method on one pair, as a process of its
 // own, whose memory and time can be measured and limited from outside.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <fstream>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -87,11 +87,15 @@ std::size_t rightMatches(const MethodOutcome& outcome, const Eigen::Affine3d& tr
   return right;
 }
 
-/// Most memory that this process has held so far [MiB].
+/// Most memory that this program has held so far [MiB]. Not getrusage's figure: that starts from
+/// what the process held that started this one.
 double peakMemory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kib = 0.0;
+    if (word == "VmHWM:" && status >> kib) return kib / 1024.0;
+  }
+  return 0.0;
 }
 
 std::string statusOf(const MethodOutcome& outcome) {

@@ -1,0 +1,82 @@
+#include "runner/datasets.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "agricolmap/core/error.hpp"
+
+namespace agricolmap::compare {
+namespace {
+
+/// The case of the campaign's paper suite that a data set is made of.
+struct Origin {
+  const char* name;
+  const char* case_name;
+  DataKind kind;
+};
+constexpr Origin kOrigins[] = {
+    {"soybean", "soybean-easy", DataKind::kSimulated},
+    {"sugar-beet-10m", "sugar-beet-10m-easy", DataKind::kSimulated},
+    {"sugar-beet-20m", "sugar-beet-20m-easy", DataKind::kSimulated},
+    {"winter-wheat", "winter-wheat-easy", DataKind::kSimulated},
+    {"semireal-sugarbeet", "semireal-sugarbeet", DataKind::kSemiReal},
+    {"real-soybean", "real-soybean", DataKind::kSemiReal},
+};
+
+/// The comparison disturbs the exact guess itself, for all methods alike.
+void makeGuessExact(GeotagOptions& geotag) {
+  geotag.translation = geotag.heading_deg = geotag.scale = 0.0;
+  geotag.z = geotag.tilt_deg = geotag.across_rows = 0.0;
+  geotag.unknown_scale = 1.0;
+}
+
+}  // namespace
+
+std::string toString(DataKind kind) {
+  return kind == DataKind::kSimulated ? "simulated" : "semi-real";
+}
+
+std::vector<DataSet> allDataSets(bool quick) {
+  const std::vector<campaign::CampaignCase> cases = campaign::suiteCases("paper", false);
+  std::vector<DataSet> sets;
+  for (const Origin& origin : kOrigins) {
+    const auto found = std::find_if(
+        cases.begin(), cases.end(),
+        [&](const campaign::CampaignCase& one) { return one.name == origin.case_name; });
+    if (found == cases.end()) continue;
+    DataSet set{origin.name, origin.kind, *found};
+    set.pairs.max_pairs = 0;
+    makeGuessExact(set.pairs.options.geotag);
+    if (quick && set.pairs.source == campaign::PairSource::kSimulated) {
+      set.pairs.options.field.width = set.pairs.options.field.height = 14.0;
+    }
+    if (quick) set.pairs.options.ugv.length = 6.0;
+    sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
+std::vector<std::string> dataSetNames() {
+  std::vector<std::string> names;
+  for (const Origin& origin : kOrigins) names.emplace_back(origin.name);
+  return names;
+}
+
+std::vector<DataSet> chooseDataSets(const std::vector<std::string>& names, bool quick) {
+  const std::vector<DataSet> all = allDataSets(quick);
+  std::vector<DataSet> chosen;
+  for (const std::string& name : names) {
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const DataSet& one) { return one.name == name; });
+    if (found == all.end()) {
+      throw UsageError(fmt::format("unknown data set '{}'; there are: {}", name,
+                                   fmt::join(dataSetNames(), ", ")));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+}  // namespace agricolmap::compare
