@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
 namespace {
@@ -92,6 +93,26 @@ void butterflyOdd(const Butterfly& b, float sign) {
   }
 }
 
+/// Elements of a pass that one thread takes at a time; a multiple of any vector's length.
+constexpr std::size_t kChunk = 8192;
+
+void butterfly(const Butterfly& b, int radix, float sign) {
+  switch (radix) {
+    case 2:
+      butterfly2(b);
+      break;
+    case 3:
+      butterflyOdd<3>(b, sign);
+      break;
+    case 4:
+      butterfly4(b, sign);
+      break;
+    default:
+      butterflyOdd<5>(b, sign);
+      break;
+  }
+}
+
 void transpose(const std::vector<float>& in, int rows, int cols, std::vector<float>& out) {
   constexpr int kTile = 16;
   for (int r0 = 0; r0 < rows; r0 += kTile) {
@@ -137,18 +158,18 @@ BatchFft::BatchFft(int length) {
   }
 }
 
-void BatchFft::transform(ComplexRaster& data, ComplexRaster& scratch, int batch,
-                         bool forward) const {
+void BatchFft::transform(ComplexRaster& data, ComplexRaster& scratch, int batch, bool forward,
+                         bool threads) const {
   const float sign = forward ? -1.0F : 1.0F;
   for (const Pass& pass : passes_) {
     const int parts = pass.remaining / pass.radix;
     const std::size_t run = static_cast<std::size_t>(pass.stride) * batch;
-    for (int p = 0; p < parts; ++p) {
+    const auto part = [&](int p, std::size_t begin, std::size_t end) {
       Butterfly b{};
-      b.count = run;
+      b.count = end - begin;
       for (int j = 0; j < pass.radix; ++j) {
-        const std::size_t from = run * static_cast<std::size_t>(p + j * parts);
-        const std::size_t to = run * static_cast<std::size_t>(pass.radix * p + j);
+        const std::size_t from = run * static_cast<std::size_t>(p + j * parts) + begin;
+        const std::size_t to = run * static_cast<std::size_t>(pass.radix * p + j) + begin;
         b.in_re[j] = data.re.data() + from;
         b.in_im[j] = data.im.data() + from;
         b.out_re[j] = scratch.re.data() + to;
@@ -156,20 +177,16 @@ void BatchFft::transform(ComplexRaster& data, ComplexRaster& scratch, int batch,
         b.cos[j] = pass.cos[static_cast<std::size_t>(p * pass.radix + j)];
         b.sin[j] = -sign * pass.sin[static_cast<std::size_t>(p * pass.radix + j)];
       }
-      switch (pass.radix) {
-        case 2:
-          butterfly2(b);
-          break;
-        case 3:
-          butterflyOdd<3>(b, sign);
-          break;
-        case 4:
-          butterfly4(b, sign);
-          break;
-        default:
-          butterflyOdd<5>(b, sign);
-          break;
-      }
+      butterfly(b, pass.radix, sign);
+    };
+    if (threads) {
+      const std::size_t chunks = (run + kChunk - 1) / kChunk;
+      parallelFor(static_cast<std::size_t>(parts) * chunks, [&](std::size_t i) {
+        const std::size_t begin = i % chunks * kChunk;
+        part(static_cast<int>(i / chunks), begin, std::min(run, begin + kChunk));
+      });
+    } else {
+      for (int p = 0; p < parts; ++p) part(p, 0, run);
     }
     std::swap(data, scratch);
   }
@@ -187,10 +204,10 @@ int Fft2::goodSize(int n) {
   }
 }
 
-void Fft2::forward(ComplexRaster& data, ComplexRaster& scratch) const {
-  along_rows_.transform(data, scratch, cols_, true);
+void Fft2::forward(ComplexRaster& data, ComplexRaster& scratch, bool threads) const {
+  along_rows_.transform(data, scratch, cols_, true, threads);
   transpose(data, scratch, rows_, cols_);
-  along_cols_.transform(data, scratch, rows_, true);
+  along_cols_.transform(data, scratch, rows_, true, threads);
 }
 
 void Fft2::forwardPiece(ComplexRaster& piece, ComplexRaster& piece_scratch, int width,
@@ -211,10 +228,10 @@ void Fft2::forwardPiece(ComplexRaster& piece, ComplexRaster& piece_scratch, int 
   along_cols_.transform(spectrum, scratch, rows_, true);
 }
 
-void Fft2::inverse(ComplexRaster& data, ComplexRaster& scratch) const {
-  along_cols_.transform(data, scratch, rows_, false);
+void Fft2::inverse(ComplexRaster& data, ComplexRaster& scratch, bool threads) const {
+  along_cols_.transform(data, scratch, rows_, false, threads);
   transpose(data, scratch, cols_, rows_);
-  along_rows_.transform(data, scratch, cols_, false);
+  along_rows_.transform(data, scratch, cols_, false, threads);
   const float scale = 1.0F / static_cast<float>(size());
   for (float& v : data.re) v *= scale;
   for (float& v : data.im) v *= scale;

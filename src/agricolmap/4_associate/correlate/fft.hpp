@@ -25,7 +25,9 @@ class BatchFft {
   explicit BatchFft(int length);
   /// exp(−2πi…) when forward, exp(+2πi…) otherwise; not scaled. `data` and `scratch` hold at least
   /// length · batch elements, and the result may be in either's former memory.
-  void transform(ComplexRaster& data, ComplexRaster& scratch, int batch, bool forward) const;
+  /// `threads`: spread over the cores, to the same bits; else in the caller's thread.
+  void transform(ComplexRaster& data, ComplexRaster& scratch, int batch, bool forward,
+                 bool threads = false) const;
 
  private:
   struct Pass {
@@ -48,14 +50,14 @@ class Fft2 {
   int cols() const { return cols_; }
   std::size_t size() const { return static_cast<std::size_t>(rows_) * cols_; }
   /// rows × cols → spectrum stored cols × rows. Not scaled.
-  void forward(ComplexRaster& data, ComplexRaster& scratch) const;
+  void forward(ComplexRaster& data, ComplexRaster& scratch, bool threads = false) const;
   /// The same for data that is zero but for a small piece: `piece` is rows × width, row-major, and
   /// stands in the columns first_col, first_col + 1, … (modulo cols). Costs little more than half.
   /// `piece` and `piece_scratch` are overwritten.
   void forwardPiece(ComplexRaster& piece, ComplexRaster& piece_scratch, int width, int first_col,
                     ComplexRaster& spectrum, ComplexRaster& scratch) const;
   /// Spectrum stored cols × rows → rows × cols, scaled by 1/(rows·cols).
-  void inverse(ComplexRaster& data, ComplexRaster& scratch) const;
+  void inverse(ComplexRaster& data, ComplexRaster& scratch, bool threads = false) const;
 
  private:
   int rows_;

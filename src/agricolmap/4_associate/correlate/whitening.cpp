@@ -138,7 +138,7 @@ class Whitening {
   Whitening(const SignalMap& fixed, const Fft2& fft, double floor)
       : fft_(fft), observed_(observedOf(fixed, fft)), scratch_(fft.size()) {
     ComplexRaster spectrum = observed_.values;
-    fft_.forward(spectrum, scratch_);
+    fft_.forward(spectrum, scratch_, true);
     gains_ = gainsOf(spectrum, fft_, floor);
   }
 
@@ -173,9 +173,9 @@ class Whitening {
   ComplexRaster whitened(const ComplexRaster& in) { return filtered(in, false); }
   ComplexRaster covariance(const ComplexRaster& in) { return filtered(in, true); }
   ComplexRaster filtered(ComplexRaster data, bool divide) {
-    fft_.forward(data, scratch_);
+    fft_.forward(data, scratch_, true);
     scaleChannels(data, gains_, divide, fft_.rows(), fft_.cols());
-    fft_.inverse(data, scratch_);
+    fft_.inverse(data, scratch_, true);
     for (std::size_t i = 0; i < data.size(); ++i) {
       data.re[i] *= observed_.mask[i];
       data.im[i] *= observed_.mask[i];
