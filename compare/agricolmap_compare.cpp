@@ -169,7 +169,8 @@ void addFlags(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 100000));
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first pair [80001]")
       ->check(CLI::Range(0, 1000000000));
-  app.add_option("--time-limit", arguments.time_limit, "A run is ended after this [60 s; quick: 8]")
+  app.add_option("--time-limit", arguments.time_limit,
+                 "A run is ended after so much computing [60 s; quick: 8]")
       ->check(CLI::Range(0.5, 1e5));
   app.add_option("--jobs", arguments.jobs, "Runs at a time, each on one thread [1]")
       ->check(CLI::Range(1, 1024));

@@ -7,11 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "agricolmap/core/error.hpp"
@@ -20,6 +22,10 @@
 
 namespace agricolmap::compare {
 namespace {
+
+/// A child that computes nothing, or on a machine with much else to do, may take this many times
+/// its limit.
+constexpr double kMostWaiting = 5.0;
 
 double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -33,6 +39,21 @@ double highWater(pid_t child) {
     if (word == "VmHWM:" && status >> kib) return kib / 1024.0;
   }
   return 0.0;
+}
+
+/// What a running process has computed so far, all its threads [s]; 0 if it cannot be read.
+double cpuSeconds(pid_t child) {
+  std::ifstream file(fmt::format("/proc/{}/stat", child));
+  std::string line;
+  std::getline(file, line);
+  // The program's name stands in parentheses and may contain anything; 11 fields follow, then two
+  // numbers of clock ticks.
+  std::istringstream rest(line.substr(std::min(line.size(), line.rfind(')') + 1)));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) rest >> skipped;
+  double user = 0.0, system = 0.0;
+  rest >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 pid_t start(const std::vector<std::string>& command, const std::filesystem::path& log) {
@@ -81,13 +102,13 @@ ChildResult runChild(const std::vector<std::string>& command, double limit_s,
       throw OutputError(
           fmt::format("{}: cannot be waited for: {}", command[0], std::strerror(errno)));
     }
-    result.timed_out = watch.seconds() > limit_s;
+    result.timed_out = cpuSeconds(child) > limit_s || watch.seconds() > kMostWaiting * limit_s;
     if (!killed && (result.timed_out || interruptRequested())) {
       result.peak_mib = highWater(child);
       ::kill(-child, SIGKILL);
       killed = true;
     }
-    if (!killed) std::this_thread::sleep_for(4ms);
+    if (!killed) std::this_thread::sleep_for(5ms);
   }
   throwIfInterrupted();
   result.timed_out = result.timed_out && killed;

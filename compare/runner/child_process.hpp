@@ -18,7 +18,8 @@ struct ChildResult {
 };
 
 /// Runs `command` (its first word a path), output and errors into `log`, and kills it after
-/// `seconds`. Ctrl-C on the terminal reaches the caller only: the child is killed then and
+/// `seconds` of computing, whatever else the machine has to do meanwhile (or five times as many by
+/// the clock). Ctrl-C on the terminal reaches the caller only: the child is killed then and
 /// Interrupted thrown. Throws OutputError if it cannot be started.
 ChildResult runChild(const std::vector<std::string>& command, double seconds,
                      const std::filesystem::path& log);
