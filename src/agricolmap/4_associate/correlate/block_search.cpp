@@ -60,6 +60,21 @@ Raster<float> maxPooled(const Raster<float>& in, const Eigen::Vector2i& radius) 
   return out;
 }
 
+/// Adds `step` to what a running sum over `changes` has in [from, to).
+void stepUp(std::vector<float>& changes, int from, int to, float step) {
+  changes[static_cast<std::size_t>(from)] += step;
+  changes[static_cast<std::size_t>(to)] -= step;
+}
+
+/// The `most` with the highest scores, highest first.
+template <typename Peak>
+void keepHighest(std::vector<Peak>& peaks, int most) {
+  const auto kept = std::min(peaks.size(), static_cast<std::size_t>(most));
+  std::partial_sort(peaks.begin(), peaks.begin() + static_cast<std::ptrdiff_t>(kept), peaks.end(),
+                    [](const Peak& a, const Peak& b) { return a.score > b.score; });
+  peaks.resize(kept);
+}
+
 /// Subtracts the mean; returns the variance.
 double centred(Raster<float>& raster) {
   double sum = 0.0;
@@ -191,13 +206,10 @@ std::vector<BlockSearch::Peak> BlockSearch::boundPeaks(const std::vector<Surface
       for (int i = from; i < to; ++i) sum[static_cast<std::size_t>(i)] += source[i];
       // Half of what a block on the map has where only its edge may be: see insideShare.
       const auto half = static_cast<float>(0.5 * bounds[b].variance);
-      variance[static_cast<std::size_t>(from)] += half;
-      variance[static_cast<std::size_t>(to)] -= half;
+      stepUp(variance, from, to, half);
       if (row < rim || row >= rows - rim) continue;
       const int on_from = std::clamp(rim - offsets[b].x() - first, from, to);
-      const int on_to = std::clamp(cols - rim - offsets[b].x() - first, on_from, to);
-      variance[static_cast<std::size_t>(on_from)] += half;
-      variance[static_cast<std::size_t>(on_to)] -= half;
+      stepUp(variance, on_from, std::clamp(cols - rim - offsets[b].x() - first, on_from, to), half);
     }
     float inside = 0.0F;
     for (int i = 0; i < width; ++i) {
@@ -215,10 +227,7 @@ std::vector<BlockSearch::Peak> BlockSearch::boundPeaks(const std::vector<Surface
       }
     }
   }
-  const auto kept = std::min(peaks.size(), static_cast<std::size_t>(peaks_));
-  std::partial_sort(peaks.begin(), peaks.begin() + static_cast<std::ptrdiff_t>(kept), peaks.end(),
-                    [](const Peak& a, const Peak& b) { return a.score > b.score; });
-  peaks.resize(kept);
+  keepHighest(peaks, peaks_);
   return peaks;
 }
 
