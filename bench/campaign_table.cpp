@@ -1,16 +1,9 @@
 #include "campaign_table.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
@@ -19,6 +12,7 @@
 namespace agricolmap::campaign {
 namespace {
 
+constexpr std::string_view kProgram = "agricolmap_campaign";
 constexpr std::string_view kHeader =
     "case,seed,field,preset,negative,status,accepted,success,correct,rms_m,rms_horizontal_m,"
     "rms_vertical_m,worst_m,rms_to_best_affine_m,e_t_m,e_r_rad,e_s,uniqueness,agreement,"
@@ -137,39 +131,13 @@ PairRow parseLine(std::string_view line, std::string place) {
   return row;
 }
 
-std::string slurp(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot be read", path.string()));
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-struct TableText {
-  std::string identity;
+std::vector<PairRow> parseRows(const std::vector<std::string>& lines,
+                               const std::filesystem::path& path) {
   std::vector<PairRow> rows;
-};
-
-/// `text` consists of whole lines.
-TableText parseTable(std::string_view text, const std::filesystem::path& path) {
-  TableText table;
-  const std::string_view first = takeLine(text);
-  if (!first.starts_with("# ") || takeLine(text) != kHeader) {
-    throw InputError(
-        fmt::format("{}: was not written by this version of agricolmap_campaign; choose another "
-                    "--output",
-                    path.string()));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    rows.push_back(parseLine(lines[i], rowPlace(path, i)));
   }
-  table.identity = std::string(first.substr(2));
-  for (int line = 3; !text.empty(); ++line) {
-    table.rows.push_back(parseLine(takeLine(text), fmt::format("{}:{}", path.string(), line)));
-  }
-  return table;
-}
-
-/// `text` up to its last line end.
-std::string_view wholeLines(std::string_view text) {
-  return text.substr(0, text.find_last_of('\n') + 1);
+  return rows;
 }
 
 }  // namespace
@@ -183,67 +151,20 @@ RegistrationErrors noErrors() {
 }
 
 std::vector<PairRow> readPairs(const std::filesystem::path& path, std::string& identity) {
-  const std::string text = slurp(path);
-  TableText table = parseTable(wholeLines(text), path);
-  identity = std::move(table.identity);
-  return std::move(table.rows);
+  RowLines lines = readRowFile(path, kHeader, kProgram);
+  identity = std::move(lines.identity);
+  return parseRows(lines.rows, path);
 }
 
-PairTable::PairTable(std::filesystem::path path, std::string_view identity)
-    : path_(std::move(path)) {
-  fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (fd_ < 0) {
-    throw OutputError(
-        fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
-  }
-  try {
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-      throw OutputError(fmt::format(
-          "{}: another campaign is writing it; choose another --output or wait", path_.string()));
-    }
-    const std::string text = slurp(path_);
-    const std::string_view whole = wholeLines(text);
-    if (whole.size() < text.size() && ::ftruncate(fd_, static_cast<off_t>(whole.size())) != 0) {
-      throw OutputError(
-          fmt::format("{}: cannot be repaired: {}", path_.string(), std::strerror(errno)));
-    }
-    if (whole.empty()) {
-      write(fmt::format("# {}\n{}\n", identity, kHeader));
-      return;
-    }
-    TableText table = parseTable(whole, path_);
-    if (table.identity != identity) {
-      throw InputError(
-          fmt::format("{}: its rows come from other code or options, and must not be mixed with "
-                      "new ones\n  there: {}\n  now:   {}\nchoose another --output",
-                      path_.string(), table.identity, identity));
-    }
-    rows_ = std::move(table.rows);
-    for (const PairRow& row : rows_) keys_.insert({row.case_name, row.seed, row.preset});
-  } catch (...) {
-    ::close(fd_);
-    throw;
-  }
+PairTable::PairTable(const std::filesystem::path& path, std::string_view identity)
+    : file_(path, kHeader, kProgram, identity), rows_(parseRows(file_.rows(), path)) {
+  for (const PairRow& row : rows_) keys_.insert({row.case_name, row.seed, row.preset});
 }
-
-PairTable::~PairTable() { ::close(fd_); }
 
 void PairTable::append(const PairRow& row) {
-  write(toLine(row));
+  file_.append(toLine(row));
   keys_.insert({row.case_name, row.seed, row.preset});
   rows_.push_back(row);
-}
-
-void PairTable::write(std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(fd_, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      throw OutputError(
-          fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
-    }
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
 }
 
 }  // namespace agricolmap::campaign

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "agricolmap/evaluate/metrics.hpp"
+#include "row_file.hpp"
 
 namespace agricolmap::campaign {
 
@@ -68,10 +69,7 @@ class PairTable {
   /// Opens or makes the file. `identity` is one line that says what program and options the rows
   /// come from; throws InputError when the file has another. A last line that was cut off by a
   /// crash is removed.
-  PairTable(std::filesystem::path path, std::string_view identity);
-  ~PairTable();
-  PairTable(const PairTable&) = delete;
-  PairTable& operator=(const PairTable&) = delete;
+  PairTable(const std::filesystem::path& path, std::string_view identity);
 
   const std::vector<PairRow>& rows() const { return rows_; }
   bool has(const std::string& case_name, int seed, const std::string& preset) const {
@@ -81,9 +79,7 @@ class PairTable {
   void append(const PairRow& row);
 
  private:
-  void write(std::string_view text);
-  std::filesystem::path path_;
-  int fd_ = -1;
+  RowFile file_;
   std::vector<PairRow> rows_;
   std::set<std::tuple<std::string, int, std::string>> keys_;
 };

@@ -1,15 +1,8 @@
 #include "runner/rows.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/text.hpp"
@@ -17,6 +10,7 @@
 namespace agricolmap::compare {
 namespace {
 
+constexpr std::string_view kProgram = "agricolmap_compare";
 constexpr std::string_view kHeader =
     "dataset,kind,experiment,scale_error,setting,seed,method,status,accepted,correct,rms_m,"
     "rms_horizontal_m,rms_to_best_affine_m,e_t_m,e_r_rad,e_s,wall_s,run_s,cpu_s,peak_mib,idle_mib,"
@@ -98,39 +92,13 @@ Row parseLine(std::string_view line, const std::string& place) {
   return row;
 }
 
-std::string slurp(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot be read", path.string()));
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-/// `text` consists of whole lines.
-std::vector<Row> parseTable(std::string_view text, const std::filesystem::path& path,
-                            std::string& identity) {
-  const auto takeLine = [&] {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    return line;
-  };
-  const std::string_view first = takeLine();
-  if (!first.starts_with("# ") || takeLine() != kHeader) {
-    throw InputError(fmt::format(
-        "{}: was not written by this version of agricolmap_compare; choose another --output",
-        path.string()));
-  }
-  identity = std::string(first.substr(2));
+std::vector<Row> parseRows(const std::vector<std::string>& lines,
+                           const std::filesystem::path& path) {
   std::vector<Row> rows;
-  for (int line = 3; !text.empty(); ++line) {
-    rows.push_back(parseLine(takeLine(), fmt::format("{}:{}", path.string(), line)));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    rows.push_back(parseLine(lines[i], campaign::rowPlace(path, i)));
   }
   return rows;
-}
-
-std::string_view wholeLines(std::string_view text) {
-  return text.substr(0, text.find_last_of('\n') + 1);
 }
 
 }  // namespace
@@ -141,47 +109,15 @@ std::string Row::key() const {
 }
 
 std::vector<Row> readRows(const std::filesystem::path& path, std::string& identity) {
-  const std::string text = slurp(path);
-  return parseTable(wholeLines(text), path, identity);
+  campaign::RowLines lines = campaign::readRowFile(path, kHeader, kProgram);
+  identity = std::move(lines.identity);
+  return parseRows(lines.rows, path);
 }
 
-RowTable::RowTable(std::filesystem::path path, std::string_view identity) : path_(std::move(path)) {
-  fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (fd_ < 0) {
-    throw OutputError(
-        fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
-  }
-  try {
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-      throw OutputError(fmt::format(
-          "{}: another comparison is writing it; choose another --output or wait", path_.string()));
-    }
-    const std::string text = slurp(path_);
-    const std::string_view whole = wholeLines(text);
-    if (whole.size() < text.size() && ::ftruncate(fd_, static_cast<off_t>(whole.size())) != 0) {
-      throw OutputError(
-          fmt::format("{}: cannot be repaired: {}", path_.string(), std::strerror(errno)));
-    }
-    if (whole.empty()) {
-      write(fmt::format("# {}\n{}\n", identity, kHeader));
-      return;
-    }
-    std::string there;
-    rows_ = parseTable(whole, path_, there);
-    if (there != identity) {
-      throw InputError(
-          fmt::format("{}: its rows come from other code or options, and must not be mixed with "
-                      "new ones\n  there: {}\n  now:   {}\nchoose another --output",
-                      path_.string(), there, identity));
-    }
-    for (std::size_t i = 0; i < rows_.size(); ++i) places_[rows_[i].key()] = i;
-  } catch (...) {
-    ::close(fd_);
-    throw;
-  }
+RowTable::RowTable(const std::filesystem::path& path, std::string_view identity)
+    : file_(path, kHeader, kProgram, identity), rows_(parseRows(file_.rows(), path)) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) places_[rows_[i].key()] = i;
 }
-
-RowTable::~RowTable() { ::close(fd_); }
 
 const Row* RowTable::find(const std::string& key) const {
   const auto at = places_.find(key);
@@ -189,21 +125,9 @@ const Row* RowTable::find(const std::string& key) const {
 }
 
 void RowTable::append(const Row& row) {
-  write(toLine(row));
+  file_.append(toLine(row));
   places_[row.key()] = rows_.size();
   rows_.push_back(row);
-}
-
-void RowTable::write(std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(fd_, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      throw OutputError(
-          fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
-    }
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
 }
 
 }  // namespace agricolmap::compare

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "agricolmap/evaluate/metrics.hpp"
+#include "row_file.hpp"
 
 namespace agricolmap::compare {
 
@@ -54,10 +55,7 @@ std::vector<Row> readRows(const std::filesystem::path& path, std::string& identi
 class RowTable {
  public:
   /// Opens or makes the file; throws InputError when its rows have another identity.
-  RowTable(std::filesystem::path path, std::string_view identity);
-  ~RowTable();
-  RowTable(const RowTable&) = delete;
-  RowTable& operator=(const RowTable&) = delete;
+  RowTable(const std::filesystem::path& path, std::string_view identity);
 
   const std::vector<Row>& rows() const { return rows_; }
   /// Nothing when there is no such row yet.
@@ -66,9 +64,7 @@ class RowTable {
   void append(const Row& row);
 
  private:
-  void write(std::string_view text);
-  std::filesystem::path path_;
-  int fd_ = -1;
+  campaign::RowFile file_;
   std::vector<Row> rows_;
   std::map<std::string, std::size_t> places_;
 };
