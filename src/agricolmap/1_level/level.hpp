@@ -22,7 +22,10 @@ struct Levelling {
   Eigen::Affine3d levelled_from_guess = Eigen::Affine3d::Identity();
   double tilt = 0.0;       ///< angle between the ground's normal and z before levelling [rad]
   double roughness = 0.0;  ///< robust deviation of the ground cells from the plane [m]
-  std::size_t cells = 0;   ///< ground cells used
+  std::size_t cells = 0;   ///< cells with points enough
+  /// A canopy hides the ground from many cells; the plane and its roughness are those of the
+  /// others.
+  bool under_canopy = false;
 };
 
 /// Fits the ground plane of `cloud` in the frame `guess_from_local` and levels it.

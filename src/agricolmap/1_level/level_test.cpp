@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "agricolmap/core/error.hpp"
@@ -72,6 +73,26 @@ TEST(Level, FindsTheGroundUnderATallCropThatNearlyCloses) {
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_LT(level.tilt, 0.02);
   EXPECT_LT(level.roughness, 0.03);
+}
+
+// Four cells of five show canopy only, which is higher on one side; a few points lie below ground.
+TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
+  Random random(10);
+  Cloud cloud;
+  cloud.name = "soybean";
+  for (int i = 0; i < 100000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    const bool hole =
+        std::fmod(p.x(), 0.5) < 0.1 && std::fmod(0.37 * std::floor(p.x() / 0.5), 1) < 0.4;
+    if (!hole) p.z() += 0.3 + 0.1 * p.y() + random.uniform(0.0, 0.2);
+    if (random.chance(1e-4)) p.z() -= 0.3;
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_TRUE(level.under_canopy);
+  EXPECT_LT(level.tilt, 0.01);
+  EXPECT_LT(level.roughness, 0.03);
+  EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(5.0, 1.1, 0.0)).z(), 0.0, 0.03);
 }
 
 TEST(Level, RefusesCloudsThatAreNoMap) {

@@ -41,6 +41,8 @@ struct GridMap {
   Raster<std::uint32_t> nearest;  ///< index in the cloud of the point nearest to the cell's centre
   std::size_t points = 0;         ///< points that fell into the map
   std::size_t filled = 0;         ///< cells that are not empty
+  /// Robust deviation of the ground from height 0 where the cloud shows it [m]; infinite: unknown.
+  double ground_deviation = std::numeric_limits<double>::infinity();
 
   bool valid(int row, int col) const { return weight(row, col) > 0.0F; }
   bool valid(std::size_t i) const { return weight[i] > 0.0F; }

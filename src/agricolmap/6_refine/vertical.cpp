@@ -37,6 +37,7 @@ struct Pair {
   double difference;      ///< fixed − moving height [m]
   double moving_canopy;   ///< height above the moving map's ground nearby [m]
   double fixed_canopy;    ///< and above the fixed map's [m]
+  double fixed_ground;    ///< height of the latter [m]
 };
 
 /// Cells [row0, row1) × [col0, col1) of a map.
@@ -129,8 +130,8 @@ std::vector<Pair> overlap(const GridMap& fixed, const GridMap& moving, const Eig
       const double here_canopy = here - under_moving.at(r, c);
       const double there_canopy = there - under_fixed.at(fr, fc);
       if (!std::isfinite(here_canopy) || !std::isfinite(there_canopy)) continue;
-      pairs.push_back(
-          {place, there - here, std::max(0.0, here_canopy), std::max(0.0, there_canopy)});
+      pairs.push_back({place, there - here, std::max(0.0, here_canopy), std::max(0.0, there_canopy),
+                       there - there_canopy});
     }
   }
   return pairs;
@@ -209,6 +210,18 @@ double canopyGain(const std::vector<Pair>& pairs) {
   return square > 0.0 ? product / square : 1.0;
 }
 
+/// How far the levelled planes, laid upon one another, may be from the registration's heights [m]:
+/// by their deviations, and by as much as the fixed map's lowest ground here is above its plane.
+double levelDeviation(const GridMap& fixed, const GridMap& moving, const std::vector<Pair>& pairs) {
+  std::vector<double> grounds;
+  grounds.reserve(pairs.size());
+  for (const Pair& pair : pairs) grounds.push_back(pair.fixed_ground);
+  const auto low = grounds.begin() + static_cast<std::ptrdiff_t>(
+                                         kMinGroundShare * static_cast<double>(grounds.size()));
+  std::nth_element(grounds.begin(), low, grounds.end());
+  return std::hypot(fixed.ground_deviation, moving.ground_deviation, *low);
+}
+
 }  // namespace
 
 VerticalResult fitVertical(const GridMap& fixed, const GridMap& moving,
@@ -232,6 +245,14 @@ VerticalResult fitVertical(const GridMap& fixed, const GridMap& moving,
   result.offset = model[0];
   result.slope = model.tail<2>();
   result.canopy_gain = canopyGain(pairs);
+  // Where a canopy hides the ground from the cells, the planes that levelling found from the points
+  // may tell more.
+  const double level = levelDeviation(fixed, moving, pairs);
+  if (result.ground_share < kMinGroundShare && level < result.residual) {
+    result.offset = 0.0;
+    result.slope.setZero();
+    result.residual = level;
+  }
   result.status =
       result.slope.norm() > options.max_slope ? VerticalStatus::kTooSteep : VerticalStatus::kOk;
   return result;

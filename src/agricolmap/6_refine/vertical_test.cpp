@@ -88,6 +88,27 @@ TEST(Vertical, AClosedCanopyIsToldByItsGroundShare) {
   EXPECT_LT(closed.ground_share, 0.5 * open.ground_share);
 }
 
+// From the side no soil is seen between the rows; what levelling found of it in few points counts.
+TEST(Vertical, UnderAClosedCanopyTheLevelledPlanesCount) {
+  GridMap fixed = view(1.0, 0.12, 0.3, true, 11);
+  GridMap moving = view(1.0, 0.0, 1.0, false, 12);
+  Random random(13);
+  for (int r = 0; r < fixed.frame.rows; ++r) {
+    for (int c = 0; c < fixed.frame.cols; ++c) {
+      const double plane = kOffset + kSlope.dot(fixed.frame.centre(r, c));
+      fixed.height(r, c) += static_cast<float>(-plane);
+      moving.height(r, c) += static_cast<float>(random.uniform(0.0, 0.5));
+    }
+  }
+  const VerticalResult unknown = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
+  EXPECT_GT(std::abs(unknown.offset), 0.1);
+  fixed.ground_deviation = moving.ground_deviation = 0.02;
+  const VerticalResult known = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
+  EXPECT_EQ(known.offset, 0.0);
+  EXPECT_LT(known.residual, unknown.residual);
+  EXPECT_GE(known.residual, 0.02);
+}
+
 TEST(Vertical, MapsThatDoNotOverlapHaveNoHeight) {
   const Eigen::Affine2d away(Eigen::Translation2d(100.0, 0.0));
   EXPECT_EQ(

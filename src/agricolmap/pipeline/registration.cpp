@@ -131,6 +131,7 @@ class Registrar {
               : reachableWindow(moving_box_, result_.space, 2.0 * options_.signal.high_pass);
       result_.fixed_map = makeGridMap(fixed_, result_.frames.levelled_from_fixed,
                                       window.intersection(fixed_box_), grid_);
+      result_.fixed_map.ground_deviation = result_.frames.fixed.roughness;
       if (!options_.prior.scale_unknown) gridMoving();
     });
   }
@@ -155,6 +156,7 @@ class Registrar {
   void gridMoving() {
     result_.moving_map =
         makeGridMap(moving_, result_.frames.levelled_from_moving, moving_box_, grid_);
+    result_.moving_map.ground_deviation = result_.frames.moving.roughness;
   }
 
   void prepareMoving(const Eigen::Affine3d& guess) {
