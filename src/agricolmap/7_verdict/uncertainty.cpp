@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "agricolmap/core/parallel.hpp"
 
@@ -27,10 +29,12 @@ constexpr double kRobust = 2.0;    // deviations, as in the dense refinement (Ca
 constexpr std::size_t kLeastCells = 40;
 constexpr std::size_t kLeastBlocks = 4;
 constexpr int kParameters = 5;
+constexpr double kLeastRadius = 0.5;  // [m]
 
 /// A block's own shift against the pose and how well its texture fixes it.
 struct BlockShift {
-  bool usable = false;
+  bool seen = false;    ///< the moving map has cells enough there
+  bool usable = false;  ///< and the fixed map, too, and their textures fit
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
@@ -102,6 +106,7 @@ BlockShift shiftOf(const SignalMap& fixed, const std::vector<Cell>& cells, const
   if (cells.size() < kLeastCells) return block;
   for (const Cell& c : cells) block.place += c.place;
   block.place /= static_cast<double>(cells.size());
+  block.seen = true;
   double deviation = 1.0;
   Normal normal;
   for (int step = 0; step < kSteps; ++step) {
@@ -141,7 +146,7 @@ std::vector<BlockShift> shiftBlocks(const SignalMap& fixed, const SignalMap& mov
   fitGains(fixed, cells, gain);
   std::vector<BlockShift> shifts(blocks.size());
   parallelFor(blocks.size(), [&](std::size_t b) { shifts[b] = shiftOf(fixed, cells[b], gain); });
-  std::erase_if(shifts, [](const BlockShift& s) { return !s.usable; });
+  std::erase_if(shifts, [](const BlockShift& s) { return !s.seen; });
   return shifts;
 }
 
@@ -160,6 +165,28 @@ Eigen::Matrix<double, 2, 5> PoseUncertainty::jacobian(const Eigen::Vector2d& fix
   return j;
 }
 
+namespace {
+
+/// Expected RMS error of the blocks of the whole `strip` [m]. What lies beyond the fixed map hangs
+/// on the `compared` blocks like a lever, and the drift that bent these goes on there.
+double expectedOver(const std::vector<BlockShift>& strip, const std::vector<BlockShift>& compared,
+                    const PoseUncertainty& pose) {
+  double radius2 = 0.0;
+  for (const BlockShift& block : compared) radius2 += (block.place - pose.centre).squaredNorm();
+  radius2 = std::max(radius2 / static_cast<double>(compared.size()), kLeastRadius * kLeastRadius);
+  double sum = 0.0;
+  for (const BlockShift& block : strip) {
+    double beyond2 = std::numeric_limits<double>::infinity();
+    for (const BlockShift& other : compared) {
+      beyond2 = std::min(beyond2, (block.place - other.place).squaredNorm());
+    }
+    sum += pose.at(block.place).trace() + pose.local_rms * pose.local_rms * beyond2 / radius2;
+  }
+  return std::sqrt(sum / static_cast<double>(strip.size()));
+}
+
+}  // namespace
+
 std::optional<PoseUncertainty> estimateUncertainty(const SignalMap& fixed, const SignalMap& moving,
                                                    const Eigen::Affine2d& pose,
                                                    const Evidence& evidence,
@@ -167,7 +194,10 @@ std::optional<PoseUncertainty> estimateUncertainty(const SignalMap& fixed, const
                                                    const UncertaintyOptions& options) {
   checkOptions(options);
   if (evidence.block_side <= 0.0) return std::nullopt;
-  const std::vector<BlockShift> blocks = shiftBlocks(fixed, moving, pose, evidence);
+  const std::vector<BlockShift> strip = shiftBlocks(fixed, moving, pose, evidence);
+  std::vector<BlockShift> blocks;
+  std::copy_if(strip.begin(), strip.end(), std::back_inserter(blocks),
+               [](const BlockShift& block) { return block.usable; });
   if (blocks.size() < kLeastBlocks) return std::nullopt;
   PoseUncertainty result;
   for (const BlockShift& block : blocks) result.centre += block.place;
@@ -205,9 +235,7 @@ std::optional<PoseUncertainty> estimateUncertainty(const SignalMap& fixed, const
       options.inflation * options.inflation * (variance + offset2 * count / kParameters) +
       options.floor * options.floor * count;
   result.covariance = scale * solver.solve(Square::Identity());
-  double trace = 0.0;
-  for (const BlockShift& block : blocks) trace += result.at(block.place).trace();
-  result.expected_rms = std::sqrt(trace / static_cast<double>(blocks.size()));
+  result.expected_rms = expectedOver(strip, blocks, result);
   result.height_deviation =
       std::hypot(options.height_floor, options.height_inflation * height_residual);
   return result;

@@ -33,8 +33,9 @@ struct PoseUncertainty {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();    ///< fixed levelled frame [m]
   Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  ///< columns: u, v
   double height_deviation = 0.0;                       ///< of the height, apart from the rest [m]
-  double expected_rms = 0.0;  ///< expected horizontal RMS error over the strip [m]
-  double local_rms = 0.0;     ///< what the blocks differ by after the best affine: drift, wind [m]
+  /// Expected horizontal RMS error over the strip, that beyond the fixed map included [m].
+  double expected_rms = 0.0;
+  double local_rms = 0.0;  ///< what the blocks differ by after the best affine: drift, wind [m]
 
   /// Derivative of a point's displacement to the five parameters.
   Eigen::Matrix<double, 2, 5> jacobian(const Eigen::Vector2d& fixed) const;

@@ -47,12 +47,13 @@ SignalMap texture(const Eigen::Vector2d& corner, int rows, int cols, const Shift
   return map;
 }
 
-PoseUncertainty uncertaintyOf(double bend) {
+/// Of a strip from x = 1 to 11 m, on a map that ends at `end` [m].
+PoseUncertainty uncertaintyOf(double bend, double end = 12.0) {
   const auto none = [](const Eigen::Vector2d&) { return Eigen::Vector2d(0.0, 0.0); };
   const auto bent = [&](const Eigen::Vector2d& p) {
     return Eigen::Vector2d(0.0, bend * std::sin(p.x()));
   };
-  const SignalMap fixed = texture({0.0, 0.0}, 100, 300, none);
+  const SignalMap fixed = texture({0.0, 0.0}, 100, static_cast<int>(end / 0.04), none);
   const SignalMap moving = texture({1.0, 1.0}, 50, 250, bent);
   Evidence evidence;
   evidence.block_side = 1.0;
@@ -82,6 +83,12 @@ TEST(Uncertainty, APointFarFromTheMiddleIsLessCertain) {
   EXPECT_GT(end, middle);
   // The long direction is known better per metre than the short one.
   EXPECT_LT(found.covariance(3, 3), found.covariance(4, 4));
+}
+
+TEST(Uncertainty, GrowsWithWhatLiesBeyondTheMap) {
+  const PoseUncertainty half = uncertaintyOf(0.02, 6.0);
+  EXPECT_LT(half.centre.x(), 4.0);
+  EXPECT_GT(half.expected_rms, 2.0 * uncertaintyOf(0.02).expected_rms);
 }
 
 TEST(Uncertainty, NeedsBlocks) {
