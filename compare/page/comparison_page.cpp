@@ -215,7 +215,9 @@ void addTimes(const std::vector<Row>& rows, Document& document) {
   }
   document.blocks.emplace_back(Heading{"Time and memory"});
   document.blocks.emplace_back(Paragraph{
-      "Over all runs of all experiments, as many at a time as the command said. The paper's "
+      "Over all runs of all experiments, as many at a time as the command said; what other "
+      "programs "
+      "took of the core is taken off. The paper's "
       "figures (tab. timings_tab) are min / max / average on its authors' machine and data. "
       "Memory is the process's, with the libraries of all methods (some 40 MiB) and both clouds."});
   document.blocks.emplace_back(std::move(table));

@@ -148,6 +148,16 @@ std::string numberText(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string("–");
 }
 
+namespace {
+
+/// Seconds of computing: what a run took, less what other programs on the machine took of its core.
+double computingSeconds(const Row& row) {
+  const double share = row.cpu_s / row.wall_s;
+  return std::isfinite(share) ? row.run_s * std::min(1.0, share) : row.run_s;
+}
+
+}  // namespace
+
 std::vector<TimeLine> timeLines(const std::vector<Row>& rows) {
   std::vector<TimeLine> lines;
   for (const std::string& method : methodsOf(rows)) {
@@ -161,9 +171,9 @@ std::vector<TimeLine> timeLines(const std::vector<Row>& rows) {
       line.timeouts += row.status == "timeout" ? 1 : 0;
       if (std::isfinite(row.peak_mib)) memory.push_back(row.peak_mib);
       if (!std::isfinite(row.run_s)) continue;
-      all.push_back(row.run_s);
+      all.push_back(computingSeconds(row));
       if (!row.success()) continue;
-      right.push_back(row.run_s);
+      right.push_back(computingSeconds(row));
       addStages(row.stages, stages);
     }
     line.successes = right.size();

@@ -53,7 +53,7 @@ std::string accuracyCsv(const std::vector<Row>& rows);
 std::string inliersCsv(const std::vector<Row>& rows);
 std::string timesCsv(const std::vector<Row>& rows);
 
-/// Times of one method over the runs that ended by themselves [s], memory [MiB].
+/// Computing times of one method over the runs that ended by themselves [s], memory [MiB].
 struct TimeLine {
   std::string method;
   std::size_t runs = 0;      ///< that were started
