@@ -56,6 +56,9 @@ VerdictFeatures verdictFeatures(const VerdictFacts& facts) {
 
 double rightProbability(const VerdictFacts& facts) { return probabilityOf(facts, kAll); }
 
-double planeProbability(const VerdictFacts& facts) { return probabilityOf(facts, kPlane); }
+// What is right in space is right in the plane: fitted apart, the two may say otherwise.
+double planeProbability(const VerdictFacts& facts) {
+  return std::max(probabilityOf(facts, kPlane), rightProbability(facts));
+}
 
 }  // namespace agricolmap

@@ -97,6 +97,22 @@ TEST(Probability, StaysWithinItsBoundsForAnything) {
   }
 }
 
+TEST(Probability, WhatIsRightInSpaceIsRightInThePlane) {
+  for (double uniqueness = 0.5; uniqueness < 4.0; uniqueness += 0.5) {
+    for (double significance = 2.0; significance < 20.0; significance += 2.0) {
+      const VerdictFacts facts{.uniqueness = uniqueness,
+                               .significance = significance,
+                               .agreeing = 5,
+                               .blocks = 10,
+                               .expected_rms = 0.01,
+                               .local_rms = 0.01,
+                               .height_deviation = 0.012,
+                               .overlap = 0.9};
+      EXPECT_GE(planeProbability(facts), rightProbability(facts));
+    }
+  }
+}
+
 TEST(Probability, GrowsWithUniquenessAndAgreement) {
   VerdictFacts facts = factsOf(clearFinding());
   const double whole = rightProbability(facts);
