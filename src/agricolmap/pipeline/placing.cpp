@@ -17,7 +17,7 @@ struct Attempt {
   bool rows_on_rows;
 };
 constexpr std::array<Attempt, 3> kAttempts = {
-    {{1.0, 1, 1.0, true}, {2.0 / 3.0, 3, 4.0, true}, {1.0, 2, 4.0, false}}};
+    {{1.0, 1, 1.0, true}, {2.0 / 3.0, 3, 16.0, true}, {1.0, 2, 4.0, false}}};
 
 std::unique_ptr<Association> makeAssociation(const RegistrationOptions& options) {
   if (options.association == AssociationKind::kFlow) {
