@@ -96,15 +96,18 @@ void checkMethods(const std::vector<std::string>& names, const std::vector<std::
   }
 }
 
-/// The data sets that are asked for and can be had. Throws InputError when none can.
+/// The data sets that are asked for and can be had. Throws InputError when none can, and for real
+/// pairs that cannot be used: now, not after hours of others, whose rows a mended pair would not
+/// belong to.
 std::vector<DataSet> chosenDataSets(const Arguments& arguments) {
   std::vector<DataSet> asked = chooseDataSets(arguments.datasets, arguments.quick);
   for (DataSet& set : publishedDataSets(arguments.published)) asked.push_back(std::move(set));
-  const PairProvider provider(arguments.shared);
+  PairProvider provider(arguments.shared);
   std::vector<DataSet> sets;
   for (DataSet& set : asked) {
     const std::string reason = provider.unavailable(set);
     if (reason.empty()) {
+      if (set.published) provider.make(set, arguments.first_seed);
       sets.push_back(std::move(set));
     } else {
       fmt::print(stderr, "skipped {}: {}\n", set.name, reason);

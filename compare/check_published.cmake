@@ -51,6 +51,27 @@ foreach(text IN ITEMS "Sugar Beet 10m/ugv (real)" "scale error 0 %, real" "Real 
   endif()
 endforeach()
 
+# The same call has nothing left to do.
+file(SHA256 ${FOLDER}/result/rows.csv before)
+expect(0 "" ${call} --pairs 2 --dataset ${data})
+file(SHA256 ${FOLDER}/result/rows.csv after)
+if(NOT before STREQUAL after)
+  message(FATAL_ERROR "the second call added rows")
+endif()
+
+# Several folders, beside a simulated data set.
+set(both ${COMPARE} -o ${FOLDER}/both --quick --experiments accuracy --methods default)
+file(COPY "${data}/Sugar Beet 10m/" DESTINATION "${FOLDER}/more/North, 2nd")
+expect(0 "" ${both} --dataset ${data} --dataset ${FOLDER}/more --datasets sugar-beet-10m)
+file(STRINGS ${FOLDER}/both/rows.csv rows)
+foreach(name IN ITEMS "sugar-beet-10m,simulated" "Sugar Beet 10m/ugv,real" "North- 2nd/ugv,real")
+  string(FIND "${rows}" "${name},accuracy,0.1,0.1,80001,default,accepted,1,1," place)
+  if(place LESS 0)
+    message(FATAL_ERROR "the row of ${name} is missing: ${rows}")
+  endif()
+endforeach()
+expect(3 "both are the pair" ${both} --dataset ${data} --dataset ${data})
+
 # Other clouds of the same name must not add to these rows.
 file(APPEND "${data}/Sugar Beet 10m/ugv/point_cloud.ply" "more")
 expect(3 "choose another --output" ${call} --dataset ${data})
@@ -58,6 +79,8 @@ expect(3 "choose another --output" ${call} --dataset ${data})
 expect(3 "is no folder" ${call} --dataset ${FOLDER}/nowhere)
 file(MAKE_DIRECTORY ${FOLDER}/empty)
 expect(3 "no pair of clouds" ${call} --dataset ${FOLDER}/empty)
+file(WRITE "${data}/Sugar Beet 10m/truth.txt" "1 0 0 1e5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+expect(3 "beside the drone's map" ${call} --dataset ${data})
 file(REMOVE "${data}/Sugar Beet 10m/truth.txt")
 expect(3 "has no truth" ${call} --dataset ${data})
 file(WRITE "${data}/Sugar Beet 10m/ugv/ground_truth.txt" "1 0 0 5 0 1 0 6 0 0 1 7 0.1\n")
