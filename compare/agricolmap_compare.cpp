@@ -1,6 +1,8 @@
 // agricolmap_compare: the paper's experiments with all methods.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -18,10 +20,11 @@
 #include "page/comparison_page.hpp"
 #include "page/statistics.hpp"
 #include "page/summary.hpp"
-#include "pair_maker.hpp"
 #include "revision.hpp"
 #include "runner/campaign.hpp"
 #include "runner/child_process.hpp"
+#include "runner/pair_provider.hpp"
+#include "runner/published_sets.hpp"
 
 namespace agricolmap::compare {
 namespace {
@@ -31,6 +34,7 @@ struct Arguments {
   std::vector<std::string> experiments = experimentNames();
   std::vector<std::string> methods = {};  ///< empty: all
   std::vector<std::string> datasets = dataSetNames();
+  std::vector<std::filesystem::path> published = {};  ///< folders
   int pairs = -1;
   int first_seed = 80001;
   double time_limit = -1.0;
@@ -42,17 +46,19 @@ struct Arguments {
   bool page_only = false;
 };
 
-/// What makes rows comparable: the code, the fields and the limits.
-std::string identityOf(const Arguments& arguments) {
+/// What makes rows comparable: the code, the fields, the real data and the limits.
+std::string identityOf(const Arguments& arguments, const std::vector<DataSet>& chosen) {
   std::uint64_t hash = hashText("");
   for (const DataSet& set : allDataSets(arguments.quick)) hash ^= hashText(set.pairs.text());
   for (const std::string& name : presetNames()) {
     RegistrationOptions options = preset(name);
     hash ^= hashText(name + dumpYaml(optionTable(options)));
   }
-  return fmt::format("agricolmap_compare {}, source {}, options {:016x}, time limit {:g} s{}",
+  const std::string real = publishedText(chosen);
+  return fmt::format("agricolmap_compare {}, source {}, options {:016x}, time limit {:g} s{}{}",
                      AGRICOLMAP_VERSION, kRevision, hash, arguments.time_limit,
-                     arguments.quick ? ", quick" : "");
+                     arguments.quick ? ", quick" : "",
+                     real.empty() ? "" : fmt::format(", real data {:016x}", hashText(real)));
 }
 
 /// agricolmap_method, which is built beside this program.
@@ -90,6 +96,27 @@ void checkMethods(const std::vector<std::string>& names, const std::vector<std::
   }
 }
 
+/// The data sets that are asked for and can be had. Throws InputError when none can, and for real
+/// pairs that cannot be used: now, not after hours of others, whose rows a mended pair would not
+/// belong to.
+std::vector<DataSet> chosenDataSets(const Arguments& arguments) {
+  std::vector<DataSet> asked = chooseDataSets(arguments.datasets, arguments.quick);
+  for (DataSet& set : publishedDataSets(arguments.published)) asked.push_back(std::move(set));
+  PairProvider provider(arguments.shared);
+  std::vector<DataSet> sets;
+  for (DataSet& set : asked) {
+    const std::string reason = provider.unavailable(set);
+    if (reason.empty()) {
+      if (set.published) provider.make(set, arguments.first_seed);
+      sets.push_back(std::move(set));
+    } else {
+      fmt::print(stderr, "skipped {}: {}\n", set.name, reason);
+    }
+  }
+  if (sets.empty()) throw InputError("no data set is left to compare on");
+  return sets;
+}
+
 CampaignOptions campaignOf(const Arguments& arguments) {
   CampaignOptions options;
   options.shared = arguments.shared;
@@ -109,15 +136,7 @@ CampaignOptions campaignOf(const Arguments& arguments) {
   for (const std::string& name : arguments.experiments) {
     for (Curve& curve : curvesOf(name, arguments.quick)) options.curves.push_back(std::move(curve));
   }
-  const campaign::PairMaker maker(arguments.shared);
-  for (DataSet& set : chooseDataSets(arguments.datasets, arguments.quick)) {
-    const std::string reason = maker.unavailable(set.pairs.source);
-    if (reason.empty()) {
-      options.datasets.push_back(std::move(set));
-    } else {
-      fmt::print(stderr, "skipped {}: {}\n", set.name, reason);
-    }
-  }
+  options.datasets = chosenDataSets(arguments);
   return options;
 }
 
@@ -165,7 +184,12 @@ void addFlags(CLI::App& app, Arguments& arguments) {
   app.add_option("--datasets", arguments.datasets,
                  fmt::format("{} [all]", fmt::join(dataSetNames(), ", ")))
       ->delimiter(',');
-  app.add_option("--pairs", arguments.pairs, "Pairs per data set [10; quick: 1]")
+  app.add_option("--dataset", arguments.published,
+                 "Folder of real pairs as in docs/published-data.md, once or more; without\n"
+                 "--datasets nothing else is compared on")
+      ->allow_extra_args(false);
+  app.add_option("--pairs", arguments.pairs,
+                 "Pairs per data set; of a real one, wrong guesses for its pair [10; quick: 1]")
       ->check(CLI::Range(1, 100000));
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first pair [80001]")
       ->check(CLI::Range(0, 1000000000));
@@ -195,8 +219,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
   }
-  if (arguments.quick && app.count("--datasets") == 0) {
-    arguments.datasets = {"sugar-beet-10m", "real-soybean"};
+  if (app.count("--datasets") == 0) {
+    if (arguments.quick) arguments.datasets = {"sugar-beet-10m", "real-soybean"};
+    if (!arguments.published.empty()) arguments.datasets.clear();
   }
   if (arguments.quick && app.count("--experiments") == 0)
     std::erase(arguments.experiments, "joint");
@@ -212,7 +237,7 @@ int run(int argc, char** argv) {
       throw OutputError(fmt::format("{}: cannot be made: {}", arguments.output, error.message()));
     }
     const ThreadLimit limit(arguments.jobs);
-    RowTable table(folder / "rows.csv", identityOf(arguments));
+    RowTable table(folder / "rows.csv", identityOf(arguments, options.datasets));
     runCampaign(options, table);
   }
   writePages(arguments);
@@ -228,6 +253,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "agricolmap_compare: {}\n", what);
     return static_cast<int>(code);
   };
+  spdlog::set_default_logger(spdlog::stderr_color_mt("agricolmap_compare"));
+  spdlog::set_pattern("%^%l%$: %v");
   try {
     return agricolmap::compare::run(argc, argv);
   } catch (const agricolmap::Interrupted&) {

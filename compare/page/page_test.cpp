@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +10,9 @@
 namespace agricolmap::compare {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 Row makeRow(const std::string& method, const std::string& experiment, double setting, int seed,
             bool right) {
@@ -93,6 +96,36 @@ TEST(ComparePage, TablesHaveThePapersFigures) {
               HasSubstr("simulated,soybean,0,5,orb,4,0,0.0000,0.0000,0.4899,0,4,0,0,0.82–0.88"));
   EXPECT_THAT(inliersCsv(rows), HasSubstr("simulated,soybean,orb,4,200,25.00,0.00,50.00,0.00,"));
   EXPECT_THAT(timesCsv(rows), HasSubstr("search=0.750;grid=0.250,3.9 / 6.7 / 4.8"));
+}
+
+TEST(ComparePage, RealPairsAreAKindOfTheirOwn) {
+  EXPECT_EQ(paperAccuracy("2018/Sugar Beet_20 m/ugv_row10", "surf", 0), "0.03 m / 0.04° / –");
+  EXPECT_EQ(paperAccuracy("Soybean/row soy wheat", "agricolmap", 1), "0.03 m / 0.04° / 1.9 %");
+  EXPECT_EQ(paperAccuracy("barley/wheat row", "agricolmap", 1), "") << "the crop's folder counts";
+  EXPECT_EQ(paperInliers("beet/ugv", "agricolmap"), "68.1 ± 13.6");
+  EXPECT_EQ(paperInliers("barley/ugv", "agricolmap"), "");
+
+  std::vector<Row> rows = someRows();
+  EXPECT_THAT(toHtml(comparisonDocument(rows, "")), Not(HasSubstr("Real data sets")));
+  for (Row row : someRows()) {
+    row.dataset = "winter_wheat/ugv_row1";
+    row.kind = "real";
+    rows.insert(rows.begin(), row);
+    row.dataset = "real-soybean";
+    row.kind = "semi-real";
+    rows.insert(rows.begin(), row);
+  }
+  EXPECT_THAT(kindsOf(rows), ElementsAre("simulated", "semi-real", "real"));
+  EXPECT_THAT(dataSetsOf(rows), ElementsAre("soybean", "real-soybean", "winter_wheat/ugv_row1"));
+  EXPECT_THAT(successCsv(rows, "translation"), HasSubstr("real,winter_wheat/ugv_row1,0,5,orb,4,0"));
+  EXPECT_THAT(summarySentences(rows), HasSubstr("At 3 of 9 settings"));
+  const std::string page = toHtml(comparisonDocument(rows, ""));
+  for (const char* kind : {"simulated", "semi-real", "real"}) {
+    EXPECT_THAT(page, HasSubstr(fmt::format("Translation error at scale error 0 %, {}", kind)));
+    EXPECT_THAT(page, HasSubstr(fmt::format("Success over translation error, {}: ", kind)));
+  }
+  EXPECT_THAT(page, HasSubstr("winter_wheat/ugv_row1 (real)"));
+  EXPECT_THAT(page, HasSubstr("Real data sets are one pair of real clouds each"));
 }
 
 TEST(ComparePage, IsOneFileThatNeedsNothingElse) {

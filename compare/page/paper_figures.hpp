@@ -8,7 +8,8 @@ namespace agricolmap::compare {
 
 /// Tab. err_statistic: e_t / e_R / e_s of the successes at scale error number `scale` of 0, 5, …,
 /// 30 %; `fail` where there were none, a dash where it gives no figure. Empty for a method or data
-/// set that it does not have; semi-real strips have the figures of their crop.
+/// set that it does not have; semi-real strips have the figures of their crop, real pairs those of
+/// the crop that their folder is called after.
 std::string paperAccuracy(const std::string& dataset, const std::string& method, std::size_t scale);
 
 /// Tab. inliers_percentage [%]. Empty where it has none.

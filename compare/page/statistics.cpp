@@ -131,8 +131,9 @@ std::vector<std::string> dataSetsOf(const std::vector<Row>& rows) {
 }
 
 std::vector<std::string> kindsOf(const std::vector<Row>& rows) {
-  return ordered(distinct(rows, [](const Row& row) { return row.kind; }),
-                 {toString(DataKind::kSimulated), toString(DataKind::kSemiReal)});
+  return ordered(
+      distinct(rows, [](const Row& row) { return row.kind; }),
+      {toString(DataKind::kSimulated), toString(DataKind::kSemiReal), toString(DataKind::kReal)});
 }
 
 std::vector<std::string> methodsOf(const std::vector<Row>& rows) {

@@ -9,7 +9,7 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
-#include "pair_maker.hpp"
+#include "runner/pair_provider.hpp"
 #include "runner/progress.hpp"
 #include "runner/run_method.hpp"
 
@@ -185,7 +185,7 @@ bool hopeless(const std::vector<Row>& rows, const Curve& curve, std::size_t next
 }
 
 void runCampaign(const CampaignOptions& options, RowTable& table) {
-  campaign::PairMaker maker(options.shared);
+  PairProvider provider(options.shared);
   Progress progress(options, table);
   for (int seed = options.first_seed; seed < options.first_seed + options.pairs; ++seed) {
     for (const bool slow : {false, true}) {
@@ -195,7 +195,7 @@ void runCampaign(const CampaignOptions& options, RowTable& table) {
         throwIfInterrupted();
         progress.now(data.name, seed);
         const ScratchFolder scratch(options.scratch);
-        PairFiles files(scratch.path(), maker.make(data.pairs, seed), seed);
+        PairFiles files(scratch.path(), provider.make(data, seed), seed);
         batch.run(files, progress);
       }
     }

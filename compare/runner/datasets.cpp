@@ -35,6 +35,7 @@ void makeGuessExact(GeotagOptions& geotag) {
 }  // namespace
 
 std::string toString(DataKind kind) {
+  if (kind == DataKind::kReal) return "real";
   return kind == DataKind::kSimulated ? "simulated" : "semi-real";
 }
 

@@ -19,7 +19,7 @@ namespace agricolmap::compare {
 /// What one run of one method came to. Numbers that do not exist are NaN, and empty in the file.
 struct Row {
   std::string dataset;
-  std::string kind;  ///< simulated or semi-real
+  std::string kind;  ///< simulated, semi-real or real
   std::string experiment;
   double scale = 0.0;    ///< scale error, relative
   double setting = 0.0;  ///< what the experiment varies
