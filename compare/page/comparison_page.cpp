@@ -69,7 +69,7 @@ void addSuccess(const std::vector<Row>& rows, Document& document) {
       "exact. Scale errors stretch or shrink x and y by signs of their own. A star marks cells "
       "with runs that were not made, as the method had failed on all pairs at three smaller "
       "errors; they count as failures. A dagger marks cells with runs that the time limit ended. "
-      "The paper's figures are those of its fig. correct_reg_rate "
+      "The paper's figures (dashed in the plots) are those of its fig. correct_reg_rate "
       "without scale error, on real data, as released with its code; it gives no others as "
       "numbers."});
   for (Figure& figure : successFigures(rows)) document.blocks.emplace_back(std::move(figure));
@@ -255,11 +255,19 @@ std::string realText(const std::vector<Row>& rows) {
 Document comparisonDocument(const std::vector<Row>& rows, const std::string& identity) {
   Document document;
   document.title = "AgriColMap beside other registration methods";
+  int first = rows.empty() ? 0 : rows.front().seed;
+  int last = first;
+  for (const Row& row : rows) {
+    first = std::min(first, row.seed);
+    last = std::max(last, row.seed);
+  }
   document.subtitle = fmt::format(
-      "{} runs: {}. Written by `agricolmap_compare` from rows of: {}. Simulated fields are "
-      "simulated; semi-real strips are cut from real imagery, their second sensor is simulated. "
-      "{}Seeds 31 and 51 to 53 served to tune the other methods.",
-      rows.size(), pairsText(rows), identity, realText(rows));
+      "{} runs: {}. Written by agricolmap_compare (-o DIR --pairs {} --first-seed {}) from rows "
+      "of: "
+      "{}. Simulated data sets: field and sensors are. Semi-real ones: strips cut from real "
+      "imagery, "
+      "the robot's view of it simulated. {}Seeds 31 and 51 to 53 served to tune the other methods.",
+      rows.size(), pairsText(rows), last - first + 1, first, identity, realText(rows));
   document.blocks.emplace_back(Paragraph{summarySentences(rows)});
   addSuccess(rows, document);
   addJoint(rows, document);

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace agricolmap::compare {
 
@@ -21,5 +23,10 @@ std::string paperTimes(const std::string& method);
 /// Fig. correct_reg_rate without scale error, its values as released with the code: the share of
 /// successes at the setting, or at the nearest one that there is. Empty where there is none.
 std::string paperSuccess(const std::string& experiment, const std::string& method, double setting);
+
+/// The same as numbers to draw: settings of ours with the paper's shares, in order; where it gives
+/// a range, its middle.
+std::vector<std::pair<double, double>> paperCurve(const std::string& experiment,
+                                                  const std::string& method);
 
 }  // namespace agricolmap::compare

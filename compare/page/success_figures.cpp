@@ -5,6 +5,7 @@
 #include <array>
 
 #include "page/comparison_page.hpp"
+#include "page/paper_figures.hpp"
 #include "page/statistics.hpp"
 #include "svg_plot.hpp"
 
@@ -47,7 +48,6 @@ PlotLine lineOf(const std::vector<Row>& rows, const std::vector<double>& setting
   PlotLine line;
   line.label = method;
   line.colour = kColours[colour];
-  line.dashed = method.ends_with("oracle-scale");
   line.whiskers = true;
   // Aside of each other, or equal shares would hide all but one.
   const double aside = 0.09 * (static_cast<double>(colour) - 2.0);
@@ -62,9 +62,24 @@ PlotLine lineOf(const std::vector<Row>& rows, const std::vector<double>& setting
   return line;
 }
 
+/// The paper's curve of the method, where it gives one.
+PlotLine paperLineOf(const std::string& experiment, const std::vector<double>& settings,
+                     const std::string& method, std::size_t colour) {
+  PlotLine line;
+  line.label = "paper, real data";
+  line.colour = kColours[colour];
+  line.dashed = true;
+  for (const auto& [setting, share] : paperCurve(experiment, method)) {
+    const auto found = std::find(settings.begin(), settings.end(), setting);
+    if (found == settings.end()) continue;
+    line.points.push_back({static_cast<double>(found - settings.begin()), share, share, share});
+  }
+  return line;
+}
+
 /// Settings stand at equal distances: their steps range from centimetres to metres.
 PlotPanel panelOf(const std::vector<Row>& rows, const Family& family, double scale,
-                  const std::string& unit) {
+                  const std::string& experiment) {
   PlotPanel panel;
   panel.title = fmt::format("scale {:.0f} %", 100.0 * scale);
   std::vector<Row> here;
@@ -73,7 +88,7 @@ PlotPanel panelOf(const std::vector<Row>& rows, const Family& family, double sca
   }
   const std::vector<double> settings =
       distinctNumbers(here, &Row::setting, [](const Row&) { return true; });
-  panel.x.label = unit;
+  panel.x.label = experiment == "translation" ? "error [m]" : "error [rad]";
   panel.x.low = -0.4;
   panel.x.high = static_cast<double>(settings.size()) - 0.6;
   for (std::size_t i = 0; i < settings.size(); ++i) {
@@ -82,7 +97,10 @@ PlotPanel panelOf(const std::vector<Row>& rows, const Family& family, double sca
   }
   for (std::size_t i = 0; i < family.methods.size(); ++i) {
     PlotLine line = lineOf(here, settings, family.methods[i], i);
-    if (!line.points.empty()) panel.lines.push_back(std::move(line));
+    if (line.points.empty()) continue;
+    panel.lines.push_back(std::move(line));
+    PlotLine paper = paperLineOf(experiment, settings, family.methods[i], i);
+    if (scale == 0.0 && !paper.points.empty()) panel.lines.push_back(std::move(paper));
   }
   return panel;
 }
@@ -97,7 +115,6 @@ bool hasOthers(const PlotFigure& figure) {
 std::vector<Figure> successFigures(const std::vector<Row>& rows) {
   std::vector<Figure> figures;
   for (const std::string experiment : {"translation", "heading"}) {
-    const std::string unit = experiment == "translation" ? "error [m]" : "error [rad]";
     for (const std::string& kind : kindsOf(rows)) {
       std::vector<Row> here;
       for (const Row& row : rows) {
@@ -114,7 +131,7 @@ std::vector<Figure> successFigures(const std::vector<Row>& rows) {
         figure.note = kind + ", bars: 95 % intervals; settings at equal distances";
         figure.y = {"success", 0.0, 1.0, {0.0, 0.25, 0.5, 0.75, 1.0}, {}};
         for (const double scale : scales) {
-          figure.panels.push_back(panelOf(here, family, scale, unit));
+          figure.panels.push_back(panelOf(here, family, scale, experiment));
         }
         if (!hasOthers(figure)) continue;
         figures.push_back({fmt::format("success_{}_{}_{}.svg", experiment, kind, family.name),
