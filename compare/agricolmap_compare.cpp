@@ -225,7 +225,7 @@ int run(int argc, char** argv) {
   }
   if (arguments.quick && app.count("--experiments") == 0)
     std::erase(arguments.experiments, "joint");
-  if (arguments.pairs < 0) arguments.pairs = arguments.quick ? 1 : 10;
+  if (arguments.pairs < 0) arguments.pairs = arguments.quick ? 1 : 2;
   if (arguments.time_limit < 0.0) arguments.time_limit = arguments.quick ? 8.0 : 60.0;
   installInterruptHandler();
   const std::filesystem::path folder = arguments.output;

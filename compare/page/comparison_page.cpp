@@ -68,7 +68,8 @@ void addSuccess(const std::vector<Row>& rows, Document& document) {
       "three. Translation: in a random direction, heading exact; heading: of random sign, position "
       "exact. Scale errors stretch or shrink x and y by signs of their own. A star marks cells "
       "with runs that were not made, as the method had failed on all pairs at three smaller "
-      "errors; they count as failures. A dagger marks cells with runs that the time limit ended. "
+      "errors or is rigid and the scale error alone too much; they count as failures. A dagger "
+      "marks cells with runs that the time limit ended. "
       "The paper's figures (dashed in the plots) are those of its fig. correct_reg_rate "
       "without scale error, on real data, as released with its code; it gives no others as "
       "numbers."});

@@ -104,8 +104,11 @@ class Batch {
         known.push_back(*done);
         continue;
       }
-      if (chain.curve->rising &&
-          hopeless(known, *chain.curve, i, row.dataset, row.kind, row.method)) {
+      if (cannotBeRight(chain.method, cell)) {
+        row.status = "skipped";
+        row.note = "rigid";
+      } else if (chain.curve->rising &&
+                 hopeless(known, *chain.curve, i, row.dataset, row.kind, row.method)) {
         row.status = "skipped";
         row.note = "lost at smaller errors";
       } else {
@@ -162,6 +165,11 @@ class ScratchFolder {
 }  // namespace
 
 bool isSlow(const std::string& method) { return method.starts_with("go-icp"); }
+
+bool cannotBeRight(const std::string& method, const Cell& cell) {
+  const bool rigid = method == "go-icp" || method == "fpfh-gicp";
+  return rigid && cell.scale > SuccessLimits{}.scale;
+}
 
 bool hopeless(const std::vector<Row>& rows, const Curve& curve, std::size_t next,
               const std::string& dataset, const std::string& kind, const std::string& method) {

@@ -124,6 +124,14 @@ TEST_F(RunnerTest, GivesUpOnlyAfterThreeLostSettingsAndSixLostRuns) {
   EXPECT_FALSE(lost("soybean"));
 }
 
+TEST_F(RunnerTest, RigidMethodsAreNotTriedWhereTheScaleErrorAloneIsTooMuch) {
+  EXPECT_FALSE(cannotBeRight("go-icp", {"translation", 1.0, 1.0, 0.0, 0.0}));
+  EXPECT_TRUE(cannotBeRight("go-icp", {"accuracy", 0.05, 0.05, 0.01, 0.05}));
+  EXPECT_TRUE(cannotBeRight("fpfh-gicp", {"joint", 1.0, 5.0, 0.2, 0.3}));
+  EXPECT_FALSE(cannotBeRight("go-icp-oracle-scale", {"accuracy", 0.05, 0.05, 0.01, 0.05}));
+  EXPECT_FALSE(cannotBeRight("icp-affine", {"accuracy", 0.05, 0.05, 0.01, 0.05}));
+}
+
 TEST_F(RunnerTest, ChildEndsAtItsLimitOrByItself) {
   const ChildResult slow = runChild({"/bin/sleep", "20"}, 0.2, folder_ / "log");
   EXPECT_TRUE(slow.timed_out);
