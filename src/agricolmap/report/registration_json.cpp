@@ -53,7 +53,8 @@ Json cloudJson(const Cloud& cloud, const Levelling& levelling, const GridMap& ma
   json["box_max_m"] = vectorJson((cloud.origin + box.max.cast<double>()).eval());
   json["ground"] = {{"tilt_deg", number(levelling.tilt * kDegPerRad)},
                     {"roughness_m", number(levelling.roughness)},
-                    {"cells", levelling.cells}};
+                    {"cells", levelling.cells},
+                    {"under_canopy", levelling.under_canopy}};
   json["map"] = {{"cell_m", number(map.frame.cell)},
                  {"rows", map.frame.rows},
                  {"cols", map.frame.cols},
