@@ -4,6 +4,8 @@
 #include <memory>
 #include <string_view>
 
+#include "agricolmap/pipeline/straighten.hpp"
+
 namespace agricolmap {
 namespace {
 
@@ -18,6 +20,9 @@ struct Attempt {
 };
 constexpr std::array<Attempt, 3> kAttempts = {
     {{1.0, 1, 1.0, true}, {2.0 / 3.0, 3, 16.0, true}, {1.0, 2, 4.0, false}}};
+
+/// One block may come to agree by chance.
+constexpr std::size_t kOddBlock = 1;
 
 std::unique_ptr<Association> makeAssociation(const RegistrationOptions& options) {
   if (options.association == AssociationKind::kFlow) {
@@ -112,27 +117,49 @@ PairOutcome PairPlacer::settle(const Placement& placement, std::vector<RefinedPo
   return outcome;
 }
 
+PairPlacer::Judged PairPlacer::judgePose(const Eigen::Affine2d& pose,
+                                         const RefineOutcome& refined) const {
+  Judged judged;
+  judged.pose = pose;
+  const Fit fit = refinement_.fit(pose);
+  judged.correlation = fit.correlation;
+  judged.vertical =
+      times_.run("vertical", [&] { return fitVertical(fixed_, moving_, pose, options_.vertical); });
+  times_.run("verdict", [&] {
+    judged.finding = refinement_.examine(pose, refined, judged.vertical.residual);
+    judged.finding.overlap = fit.overlap;
+  });
+  return judged;
+}
+
 void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const {
   outcome.has_transform = refined.best.has_value();
   if (!refined.best) {
     outcome.verdict = rejectBecause(refined.failure);
     return;
   }
-  outcome.pose = refined.best->pose;
   outcome.rivals = refined.rivals;
-  const Fit fit = refinement_.fit(outcome.pose);
-  outcome.overlap = fit.overlap;
-  outcome.correlation = fit.correlation;
-  outcome.vertical = times_.run(
-      "vertical", [&] { return fitVertical(fixed_, moving_, outcome.pose, options_.vertical); });
+  Judged judged = judgePose(refined.best->pose, refined);
+  // 7d. A bent strip, when the blocks tell. The paper's own refinement stays as it is.
+  const bool dense =
+      options_.refine == RefineKind::kDense || options_.refine == RefineKind::kDenseCpd;
+  const auto straight =
+      dense ? straightenedPose(judged.finding.evidence, space_.scale_axes) : std::nullopt;
+  if (straight) {
+    Judged other = judgePose(*straight, refined);
+    const bool adopted =
+        other.finding.evidence.agreeing > judged.finding.evidence.agreeing + kOddBlock;
+    if (adopted) judged = std::move(other);
+    outcome.counts.emplace_back("straightened", adopted ? 1.0 : 0.0);
+  }
+  outcome.pose = judged.pose;
+  outcome.overlap = judged.finding.overlap;
+  outcome.correlation = judged.correlation;
+  outcome.vertical = judged.vertical;
   // 8. Verdict.
-  times_.run("verdict", [&] {
-    Finding finding = refinement_.examine(outcome.pose, refined, outcome.vertical.residual);
-    finding.overlap = fit.overlap;
-    outcome.verdict = judge(finding, space_, options_.verdict);
-    outcome.evidence = std::move(finding.evidence);
-    outcome.uncertainty = std::move(finding.uncertainty);
-  });
+  outcome.verdict = judge(judged.finding, space_, options_.verdict);
+  outcome.evidence = std::move(judged.finding.evidence);
+  outcome.uncertainty = std::move(judged.finding.uncertainty);
   if (outcome.vertical.status != VerticalStatus::kOk) {
     outcome.verdict = rejectBecause("the heights of the two maps do not fit one another");
   }

@@ -66,6 +66,14 @@ class PairPlacer {
   PairOutcome settle(const Placement& placement, std::vector<RefinedPose> rivals) const;
 
  private:
+  /// A pose with all that the verdict rests on.
+  struct Judged {
+    Eigen::Affine2d pose;
+    VerticalResult vertical;
+    Finding finding;
+    double correlation;
+  };
+  Judged judgePose(const Eigen::Affine2d& pose, const RefineOutcome& refined) const;
   void judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const;
 
   const GridMap& fixed_;
