@@ -132,6 +132,26 @@ PairPlacer::Judged PairPlacer::judgePose(const Eigen::Affine2d& pose,
   return judged;
 }
 
+// 7d. The paper's own refinement stays as it is.
+std::optional<bool> PairPlacer::straighten(const RefineOutcome& refined, Judged& judged) const {
+  if (options_.refine != RefineKind::kDense && options_.refine != RefineKind::kDenseCpd) return {};
+  const auto straight = straightenedPose(judged.finding.evidence, space_.scale_axes);
+  if (!straight) return {};
+  Judged other = judgePose(*straight, refined);
+  if (other.finding.evidence.agreeing <= judged.finding.evidence.agreeing + kOddBlock) return false;
+  judged = std::move(other);
+  // It may not have been bent, but caught at the edge of the refinement's basin.
+  const auto finer = times_.run("refine", [&] { return refinement_.refineFrom(*straight); });
+  if (!finer) return true;
+  other = judgePose(finer->pose, refined);
+  const Evidence& now = other.finding.evidence;
+  const Evidence& before = judged.finding.evidence;
+  if (now.agreeing >= before.agreeing && now.significance > before.significance) {
+    judged = std::move(other);
+  }
+  return true;
+}
+
 void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const {
   outcome.has_transform = refined.best.has_value();
   if (!refined.best) {
@@ -140,17 +160,8 @@ void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome
   }
   outcome.rivals = refined.rivals;
   Judged judged = judgePose(refined.best->pose, refined);
-  // 7d. A bent strip, when the blocks tell. The paper's own refinement stays as it is.
-  const bool dense =
-      options_.refine == RefineKind::kDense || options_.refine == RefineKind::kDenseCpd;
-  const auto straight =
-      dense ? straightenedPose(judged.finding.evidence, space_.scale_axes) : std::nullopt;
-  if (straight) {
-    Judged other = judgePose(*straight, refined);
-    const bool adopted =
-        other.finding.evidence.agreeing > judged.finding.evidence.agreeing + kOddBlock;
-    if (adopted) judged = std::move(other);
-    outcome.counts.emplace_back("straightened", adopted ? 1.0 : 0.0);
+  if (const auto straightened = straighten(refined, judged)) {
+    outcome.counts.emplace_back("straightened", *straightened ? 1.0 : 0.0);
   }
   outcome.pose = judged.pose;
   outcome.overlap = judged.finding.overlap;

@@ -74,6 +74,8 @@ class PairPlacer {
     double correlation;
   };
   Judged judgePose(const Eigen::Affine2d& pose, const RefineOutcome& refined) const;
+  /// Lays a strip of which whole parts are displaced by these; whether that was tried and did good.
+  std::optional<bool> straighten(const RefineOutcome& refined, Judged& judged) const;
   void judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const;
 
   const GridMap& fixed_;

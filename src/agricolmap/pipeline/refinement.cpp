@@ -97,6 +97,23 @@ RefineOutcome PoseRefinement::rank(const std::vector<std::optional<RefinedPose>>
   return outcome;
 }
 
+RefinedPose PoseRefinement::refineFinely(const RefinedPose& start) const {
+  RefinedPose best = start;
+  // What the finest cells cannot follow (a map with fewer points than cells has hardly two seen
+  // side by side) stays as the coarser ones left it; whether it is right is for the verdict to say.
+  for (const int factor : kFinerFactors) {
+    const std::optional<RefinedPose> finer = refineAt(levelUnder(best.pose, factor), best);
+    if (!finer || finer->overlap < kLeastFinerOverlap * best.overlap) break;
+    best = *finer;
+  }
+  return best;
+}
+
+std::optional<RefinedPose> PoseRefinement::refineFrom(const Eigen::Affine2d& pose) const {
+  const std::optional<RefinedPose> ranked = refineAt(levels_[kRankingLevel], RefinedPose{pose});
+  return ranked ? std::optional(refineFinely(*ranked)) : std::nullopt;
+}
+
 RefineOutcome PoseRefinement::refineDensely(
     std::vector<std::optional<RefinedPose>> poses,
     std::vector<std::pair<std::string, double>>& counts) const {
@@ -110,15 +127,7 @@ RefineOutcome PoseRefinement::refineDensely(
   counts.emplace_back("refined_placements", static_cast<double>(std::count_if(
                                                 poses.begin(), poses.end(),
                                                 [](const auto& p) { return p.has_value(); })));
-  // What the finest cells cannot follow (a map with fewer points than cells has hardly two seen
-  // side by side) stays as the coarser ones left it; whether it is right is for the verdict to say.
-  for (const int factor : kFinerFactors) {
-    if (!outcome.best) break;
-    const std::optional<RefinedPose> finer =
-        refineAt(levelUnder(outcome.best->pose, factor), *outcome.best);
-    if (!finer || finer->overlap < kLeastFinerOverlap * outcome.best->overlap) break;
-    outcome.best = finer;
-  }
+  if (outcome.best) outcome.best = refineFinely(*outcome.best);
   if (!outcome.best) {
     outcome.failure =
         "no placement of the moving map holds when refined: the maps have nothing coherent in "

@@ -44,6 +44,8 @@ class PoseRefinement {
   /// paper, the placement with most votes by CPD on the vegetation points; or not at all.
   RefineOutcome choose(const std::vector<Placement>& placements, StageTimes& times,
                        std::vector<std::pair<std::string, double>>& counts) const;
+  /// Refines one pose densely, from the ranking level on; nothing when it does not hold.
+  std::optional<RefinedPose> refineFrom(const Eigen::Affine2d& pose) const;
   /// What the verdict rests on, for the refined `pose` of an outcome. `height_residual`: robust
   /// deviation of the ground's heights [m].
   Finding examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
@@ -65,6 +67,8 @@ class PoseRefinement {
   RefineOutcome rank(const std::vector<std::optional<RefinedPose>>& poses) const;
   RefineOutcome refineDensely(std::vector<std::optional<RefinedPose>> poses,
                               std::vector<std::pair<std::string, double>>& counts) const;
+  /// Through the cells finer than the ranking level.
+  RefinedPose refineFinely(const RefinedPose& start) const;
   /// Whether the point refinement's answer can stand beside the dense one's.
   bool agrees(const RefinedPose& points, const RefinedPose& dense) const;
   RefineOutcome refineByPoints(const RefinedPose& start,

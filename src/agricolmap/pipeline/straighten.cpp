@@ -10,8 +10,8 @@ namespace {
 /// Blocks whose middles are no further apart, in sides, are neighbours: also across a corner.
 constexpr double kNeighbours = 1.6;
 /// Neighbours of a bent strip are displaced alike to so much [m]. By chance one block in sixteen
-/// is, of those looked for within half a metre.
-constexpr double kAlike = 0.12;
+/// is, of those looked for within half a metre; a scale that is a tenth off displaces them so, too.
+constexpr double kAlike = 0.2;
 constexpr std::size_t kLeastNeighbours = 2;
 /// So many blocks must disagree alike, and so many be coherent in all.
 constexpr std::size_t kLeastBent = 2;
