@@ -235,7 +235,9 @@ std::string pairsText(const std::vector<Row>& rows) {
       low = high < 0 ? row.seed : std::min(low, row.seed);
       high = high < 0 ? row.seed : std::max(high, row.seed);
     }
-    text += fmt::format("{}{} (seeds {} to {})", text.empty() ? "" : ", ", dataset, low, high);
+    const std::string seeds =
+        low == high ? fmt::format("seed {}", low) : fmt::format("seeds {} to {}", low, high);
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", dataset, seeds);
   }
   return text;
 }
