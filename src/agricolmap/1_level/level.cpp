@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <unordered_map>
@@ -12,6 +13,7 @@
 
 #include "agricolmap/1_level/ground_plane.hpp"
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
 
@@ -157,17 +159,16 @@ UnderCanopy levelBySupport(Eigen::Affine3d levelled, const LevelPoints& points,
 /// Not at once: clouds have points below the ground, too.
 Levelling levelUnderCanopy(const Levelling& found, const LevelPoints& points,
                            const Eigen::Vector3d& centre, const LevelOptions& options) {
-  std::vector<UnderCanopy> planes;
+  const Eigen::Affine3d starts[] = {Eigen::Affine3d::Identity(), found.levelled_from_guess};
+  std::vector<UnderCanopy> planes(std::size(kLowerPercentiles) * std::size(starts));
+  parallelFor(planes.size(), [&](std::size_t i) {
+    const double percentile = kLowerPercentiles[i / std::size(starts)] * options.percentile;
+    planes[i] =
+        levelBySupport(starts[i % std::size(starts)], points, centre, options.cell, percentile);
+  });
+  std::erase_if(planes, [](const UnderCanopy& plane) { return plane.share < kLeastSupport; });
   double highest = -std::numeric_limits<double>::infinity();
-  for (const double part : kLowerPercentiles) {
-    for (const Eigen::Affine3d& start : {Eigen::Affine3d::Identity(), found.levelled_from_guess}) {
-      const UnderCanopy plane =
-          levelBySupport(start, points, centre, options.cell, part * options.percentile);
-      if (plane.share < kLeastSupport) continue;
-      highest = std::max(highest, plane.height);
-      planes.push_back(plane);
-    }
-  }
+  for (const UnderCanopy& plane : planes) highest = std::max(highest, plane.height);
   const UnderCanopy* best = nullptr;
   for (const UnderCanopy& plane : planes) {
     if (plane.height < highest - kSameHeight) continue;
