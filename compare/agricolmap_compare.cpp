@@ -42,6 +42,8 @@ struct Arguments {
   std::string shared = "../shared";
   std::string scratch;
   std::string docs;
+  std::string settings;
+  Views views = Views::kFinal;
   bool quick = false;
   bool page_only = false;
 };
@@ -49,16 +51,18 @@ struct Arguments {
 /// What makes rows comparable: the code, the fields, the real data and the limits.
 std::string identityOf(const Arguments& arguments, const std::vector<DataSet>& chosen) {
   std::uint64_t hash = hashText("");
-  for (const DataSet& set : allDataSets(arguments.quick)) hash ^= hashText(set.pairs.text());
+  for (const DataSet& set : allDataSets(arguments.views, arguments.quick))
+    hash ^= hashText(set.pairs.text());
   for (const std::string& name : presetNames()) {
     RegistrationOptions options = preset(name);
     hash ^= hashText(name + dumpYaml(optionTable(options)));
   }
   const std::string real = publishedText(chosen);
-  return fmt::format("agricolmap_compare {}, source {}, options {:016x}, time limit {:g} s{}{}",
-                     AGRICOLMAP_VERSION, kRevision, hash, arguments.time_limit,
-                     arguments.quick ? ", quick" : "",
-                     real.empty() ? "" : fmt::format(", real data {:016x}", hashText(real)));
+  return fmt::format(
+      "agricolmap_compare {}, source {}, {} settings, options {:016x}, time limit {:g} s{}{}",
+      AGRICOLMAP_VERSION, kRevision, toString(arguments.views), hash, arguments.time_limit,
+      arguments.quick ? ", quick" : "",
+      real.empty() ? "" : fmt::format(", real data {:016x}", hashText(real)));
 }
 
 /// agricolmap_method, which is built beside this program.
@@ -100,7 +104,7 @@ void checkMethods(const std::vector<std::string>& names, const std::vector<std::
 /// pairs that cannot be used: now, not after hours of others, whose rows a mended pair would not
 /// belong to.
 std::vector<DataSet> chosenDataSets(const Arguments& arguments) {
-  std::vector<DataSet> asked = chooseDataSets(arguments.datasets, arguments.quick);
+  std::vector<DataSet> asked = chooseDataSets(arguments.datasets, arguments.views, arguments.quick);
   for (DataSet& set : publishedDataSets(arguments.published)) asked.push_back(std::move(set));
   PairProvider provider(arguments.shared);
   std::vector<DataSet> sets;
@@ -193,6 +197,10 @@ void addFlags(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 100000));
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first pair [80001]")
       ->check(CLI::Range(0, 1000000000));
+  app.add_option("--settings", arguments.settings,
+                 fmt::format("How pairs may differ: {}. Improve methods on the first only\n"
+                             "[final; quick: develop]",
+                             fmt::join(viewNames(), ", ")));
   app.add_option("--time-limit", arguments.time_limit,
                  "A run is ended after so much computing [60 s; quick: 8]")
       ->check(CLI::Range(0.5, 1e5));
@@ -226,6 +234,8 @@ int run(int argc, char** argv) {
   if (arguments.quick && app.count("--experiments") == 0)
     std::erase(arguments.experiments, "joint");
   if (arguments.pairs < 0) arguments.pairs = arguments.quick ? 1 : 2;
+  if (arguments.settings.empty()) arguments.settings = arguments.quick ? "develop" : "final";
+  arguments.views = parseViews(arguments.settings);
   if (arguments.time_limit < 0.0) arguments.time_limit = arguments.quick ? 8.0 : 60.0;
   installInterruptHandler();
   const std::filesystem::path folder = arguments.output;

@@ -39,7 +39,7 @@ std::string toString(DataKind kind) {
   return kind == DataKind::kSimulated ? "simulated" : "semi-real";
 }
 
-std::vector<DataSet> allDataSets(bool quick) {
+std::vector<DataSet> allDataSets(Views views, bool quick) {
   const std::vector<campaign::CampaignCase> cases = campaign::suiteCases("paper", false);
   std::vector<DataSet> sets;
   for (const Origin& origin : kOrigins) {
@@ -49,11 +49,15 @@ std::vector<DataSet> allDataSets(bool quick) {
     if (found == cases.end()) continue;
     DataSet set{origin.name, origin.kind, *found};
     set.pairs.max_pairs = 0;
+    set.pairs.ranges = viewRanges(views, set.pairs.source);
     makeGuessExact(set.pairs.options.geotag);
     if (quick && set.pairs.source == campaign::PairSource::kSimulated) {
       set.pairs.options.field.width = set.pairs.options.field.height = 14.0;
     }
-    if (quick) set.pairs.options.ugv.length = 6.0;
+    if (quick) {
+      set.pairs.options.ugv.length = 6.0;
+      std::erase_if(set.pairs.ranges, [](const auto& one) { return one.path == "ugv.length"; });
+    }
     sets.push_back(std::move(set));
   }
   return sets;
@@ -65,8 +69,9 @@ std::vector<std::string> dataSetNames() {
   return names;
 }
 
-std::vector<DataSet> chooseDataSets(const std::vector<std::string>& names, bool quick) {
-  const std::vector<DataSet> all = allDataSets(quick);
+std::vector<DataSet> chooseDataSets(const std::vector<std::string>& names, Views views,
+                                    bool quick) {
+  const std::vector<DataSet> all = allDataSets(views, quick);
   std::vector<DataSet> chosen;
   for (const std::string& name : names) {
     const auto found =

@@ -8,6 +8,7 @@
 
 #include "campaign_cases.hpp"
 #include "data/published.hpp"
+#include "runner/views.hpp"
 
 namespace agricolmap::compare {
 
@@ -26,9 +27,9 @@ struct DataSet {
 };
 
 /// `quick`: small fields and short strips.
-std::vector<DataSet> allDataSets(bool quick);
+std::vector<DataSet> allDataSets(Views views, bool quick);
 std::vector<std::string> dataSetNames();
 /// Throws UsageError, listing the known names, for an unknown one.
-std::vector<DataSet> chooseDataSets(const std::vector<std::string>& names, bool quick);
+std::vector<DataSet> chooseDataSets(const std::vector<std::string>& names, Views views, bool quick);
 
 }  // namespace agricolmap::compare

@@ -110,7 +110,7 @@ TEST(PublishedSets, OtherDataOfTheSameNamesIsToldApart) {
   larger.rgb.emplace_back();
   copy.cloud("ugv_row1", larger);
   EXPECT_NE(text(copy), before) << "another cloud";
-  EXPECT_EQ(publishedText(chooseDataSets({"soybean"}, true)), "");
+  EXPECT_EQ(publishedText(chooseDataSets({"soybean"}, Views::kDevelop, true)), "");
 }
 
 TEST(PublishedSets, WhatCannotBeComparedOnIsRefused) {

@@ -77,10 +77,25 @@ TEST_F(RunnerTest, PriorIsThePapersOrWider) {
 TEST_F(RunnerTest, UnknownNamesListTheKnownOnes) {
   EXPECT_THROW(curvesOf("rotation", false), UsageError);
   try {
-    chooseDataSets({"barley"}, false);
+    chooseDataSets({"barley"}, Views::kDevelop, false);
     FAIL();
   } catch (const UsageError& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("winter-wheat"));
+  }
+}
+
+TEST_F(RunnerTest, FinalRunHasSettingsThatDevelopmentNeverSaw) {
+  const auto develop = viewRanges(Views::kDevelop, campaign::PairSource::kSimulated);
+  const auto final = viewRanges(Views::kFinal, campaign::PairSource::kSimulated);
+  ASSERT_EQ(develop.size(), final.size());
+  for (std::size_t i = 0; i < develop.size(); ++i) {
+    ASSERT_EQ(develop[i].path, final[i].path);
+    for (const double value : develop[i].values) {
+      EXPECT_THAT(final[i].values, ::testing::Not(::testing::Contains(value))) << final[i].path;
+    }
+  }
+  for (const DataSet& set : allDataSets(Views::kFinal, false)) {
+    EXPECT_NO_THROW(set.pairs.optionsFor(3)) << set.name << ": a path that no option has";
   }
 }
 

@@ -22,6 +22,7 @@ void describe(OptionTable& table, RegistrationOptions& options) {
   table.group("search", options.search);
   table.group("flow", options.flow);
   table.group("affine", options.affine);
+  table.group("hidden", options.hidden);
   table.group("dense", options.dense);
   table.group("vegetation", options.vegetation);
   table.group("cpd", options.cpd);
@@ -41,6 +42,7 @@ RegistrationOptions preset(const std::string& name) {
     options.refine = RefineKind::kCpd;
     options.grid.exg = ExgKind::kPlain;
     options.grid.coarsen = false;
+    options.hidden.fill = false;
     // One flow from the guess as it is does not reach the 30 % and 11.5° that the paper reports
     // (docs/results.md); one flow per part of that range does.
     options.flow.warps = name == "paper";

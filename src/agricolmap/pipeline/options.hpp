@@ -6,6 +6,7 @@
 
 #include "agricolmap/1_level/level.hpp"
 #include "agricolmap/2_grid/grid_map.hpp"
+#include "agricolmap/2_grid/hidden_ground.hpp"
 #include "agricolmap/2_grid/signal_map.hpp"
 #include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/4_associate/correlate/correlation_search.hpp"
@@ -29,7 +30,7 @@ enum class RefineKind { kDenseCpd, kDense, kCpd, kNone };
 struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
-  RefineKind refine = RefineKind::kDenseCpd;
+  RefineKind refine = RefineKind::kDense;
   PriorUncertainty prior;
   LevelOptions level;
   GridOptions grid;
@@ -37,6 +38,7 @@ struct RegistrationOptions {
   CorrelationOptions search;
   FlowAssociationOptions flow;
   AffineOptions affine;
+  HiddenGroundOptions hidden;
   DenseRefineOptions dense;
   VegetationOptions vegetation;
   CpdOptions cpd;

@@ -139,17 +139,23 @@ std::optional<bool> PairPlacer::straighten(const RefineOutcome& refined, Judged&
   if (!straight) return {};
   Judged other = judgePose(*straight, refined);
   if (other.finding.evidence.agreeing <= judged.finding.evidence.agreeing + kOddBlock) return false;
-  judged = std::move(other);
+  // Blocks place themselves by centimetres at best: what they lay straight must also fit better.
+  bool changed = false;
+  const auto take = [&](Judged& next) {
+    const Evidence& now = next.finding.evidence;
+    const Evidence& before = judged.finding.evidence;
+    if (now.agreeing < before.agreeing || now.significance <= before.significance) return;
+    judged = std::move(next);
+    changed = true;
+  };
+  take(other);
   // It may not have been bent, but caught at the edge of the refinement's basin.
   const auto finer = times_.run("refine", [&] { return refinement_.refineFrom(*straight); });
-  if (!finer) return true;
-  other = judgePose(finer->pose, refined);
-  const Evidence& now = other.finding.evidence;
-  const Evidence& before = judged.finding.evidence;
-  if (now.agreeing >= before.agreeing && now.significance > before.significance) {
-    judged = std::move(other);
+  if (finer) {
+    other = judgePose(finer->pose, refined);
+    take(other);
   }
-  return true;
+  return changed;
 }
 
 void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const {

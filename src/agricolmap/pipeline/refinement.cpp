@@ -28,6 +28,13 @@ constexpr double kVegetationRim = 2.0;
 constexpr double kMostDifference = 0.08;
 constexpr double kLeastCorrelation = 0.96;
 
+GridMap withoutHidden(const GridMap& moving, const RegistrationOptions& options) {
+  HiddenGroundOptions hidden = options.hidden;
+  // The RGB term reads colours, which the hidden ground is not given.
+  if (options.signal.term == DataTerm::kRgb) hidden.fill = false;
+  return withHiddenGround(moving, hidden);
+}
+
 RefineOutcome failed(std::string why) {
   RefineOutcome outcome;
   outcome.failure = std::move(why);
@@ -38,7 +45,11 @@ RefineOutcome failed(std::string why) {
 
 PoseRefinement::PoseRefinement(const GridMap& fixed, const GridMap& moving,
                                const SearchSpace& space, const RegistrationOptions& options)
-    : fixed_(fixed), moving_(moving), space_(space), options_(options) {
+    : fixed_(fixed),
+      moving_(moving),
+      filled_(withoutHidden(moving, options)),
+      space_(space),
+      options_(options) {
   for (const int factor : kFactors) {
     levels_.push_back({makeSignalMap(fixed, factor, options.signal),
                        makeSignalMap(moving, factor, options.signal)});
@@ -70,7 +81,7 @@ PoseRefinement::Level PoseRefinement::levelUnder(const Eigen::Affine2d& pose, in
   // Room for the high-pass, and for what a level may move the pose by.
   const double rim = 1.5 * options_.signal.high_pass + 8.0 * factor * moving_.frame.cell;
   return {makeSignalMap(fixedUnder(pose, rim), factor, options_.signal),
-          makeSignalMap(moving_, factor, options_.signal)};
+          makeSignalMap(filled_, factor, options_.signal)};
 }
 
 RefineOutcome PoseRefinement::rank(const std::vector<std::optional<RefinedPose>>& poses) const {

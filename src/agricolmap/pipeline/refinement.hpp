@@ -76,6 +76,7 @@ class PoseRefinement {
 
   const GridMap& fixed_;
   const GridMap& moving_;
+  GridMap filled_;  ///< the moving map with what plants hide from its camera, for the fine levels
   const SearchSpace& space_;
   const RegistrationOptions& options_;
   std::vector<Level> levels_;             ///< of the whole maps, coarse to fine: 12, 6 cm
