@@ -37,79 +37,45 @@ Span spanOf(const float* row, int cols, int depth) {
   return span;
 }
 
-/// Terms first…last of the kernel about each of `kCount` neighbouring floats, whose terms lie
-/// `stride` apart. Each sum waits for its last addition, but the sums do not wait for each other,
-/// and they stay in registers.
-template <int kCount>
-void smoothFloats(const float* in, float* out, std::ptrdiff_t stride, int first, int last,
-                  const std::vector<float>& kernel) {
-  const int radius = static_cast<int>(kernel.size() / 2);
-  float sum[kCount] = {};
-  for (int k = first; k <= last; ++k) {
-    const float weight = kernel[static_cast<std::size_t>(k + radius)];
-    const float* term = in + k * stride;
-    for (int j = 0; j < kCount; ++j) sum[j] += weight * term[j];
-  }
-  std::copy_n(sum, kCount, out);
-}
-
-constexpr int kStrip = 64;  ///< floats smoothed together
-
-/// One cell of a row along x; the kernel is symmetric.
-template <int kDepth>
-void smoothCell(const float* in, float* out, int cols, int col, const std::vector<float>& kernel) {
-  const int radius = static_cast<int>(kernel.size() / 2);
-  const int first = std::max(-radius, -col);
-  const int last = std::min(radius, cols - 1 - col);
-  float sum[kDepth] = {};
-  for (int k = first; k <= last; ++k) {
-    const float weight = kernel[static_cast<std::size_t>(k + radius)];
-    const float* cell = in + static_cast<std::ptrdiff_t>(col + k) * kDepth;
-    for (int j = 0; j < kDepth; ++j) sum[j] += weight * cell[j];
-  }
-  for (int j = 0; j < kDepth; ++j) out[static_cast<std::ptrdiff_t>(col) * kDepth + j] = sum[j];
-}
-
-/// One row along x. `kDepth` floats per cell.
+/// One row along x. `kDepth` floats per cell; the kernel is symmetric.
 template <int kDepth>
 void smoothRow(const float* in, float* out, int cols, Span span, const std::vector<float>& kernel) {
-  constexpr int kTogether = kStrip / kDepth;
   const int radius = static_cast<int>(kernel.size() / 2);
-  for (int col = span.begin; col < span.end;) {
-    // Single floats stay one by one: the compiler rounds their sums otherwise, and results with it.
-    if (kDepth > 1 && col >= radius && col + kTogether <= std::min(span.end, cols - radius)) {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(col) * kDepth;
-      smoothFloats<kStrip>(in + at, out + at, kDepth, -radius, radius, kernel);
-      col += kTogether;
-    } else {
-      smoothCell<kDepth>(in, out, cols, col, kernel);
-      ++col;
+  for (int col = span.begin; col < span.end; ++col) {
+    const int first = std::max(-radius, -col);
+    const int last = std::min(radius, cols - 1 - col);
+    float sum[kDepth] = {};
+    for (int k = first; k <= last; ++k) {
+      const float weight = kernel[static_cast<std::size_t>(k + radius)];
+      const float* cell = in + static_cast<std::ptrdiff_t>(col + k) * kDepth;
+      for (int j = 0; j < kDepth; ++j) sum[j] += weight * cell[j];
     }
+    for (int j = 0; j < kDepth; ++j) out[static_cast<std::ptrdiff_t>(col) * kDepth + j] = sum[j];
   }
 }
 
-/// Floats [begin, end) of one row along y, from the rows around it.
+/// Floats [begin, end) of one row along y, from the rows around it, in strips of columns that stay
+/// in registers.
 void smoothColumn(const float* in, float* out, int row, int rows, std::size_t width,
                   std::size_t begin, std::size_t end, const std::vector<float>& kernel) {
+  constexpr std::size_t kStrip = 32;
   const int radius = static_cast<int>(kernel.size() / 2);
   const int first = std::max(-radius, -row);
   const int last = std::min(radius, rows - 1 - row);
-  const auto stride = static_cast<std::ptrdiff_t>(width);
-  in += static_cast<std::ptrdiff_t>(row) * stride;
-  out += static_cast<std::ptrdiff_t>(row) * stride;
-  while (begin + kStrip <= end) {
-    smoothFloats<kStrip>(in + begin, out + begin, stride, first, last, kernel);
-    begin += kStrip;
+  for (; begin < end; begin += kStrip) {
+    float sum[kStrip] = {};
+    const std::size_t count = std::min(kStrip, end - begin);
+    for (int k = first; k <= last; ++k) {
+      const float weight = kernel[static_cast<std::size_t>(k + radius)];
+      const float* source = in + static_cast<std::size_t>(row + k) * width + begin;
+      if (count == kStrip) {
+        for (std::size_t j = 0; j < kStrip; ++j) sum[j] += weight * source[j];
+      } else {
+        for (std::size_t j = 0; j < count; ++j) sum[j] += weight * source[j];
+      }
+    }
+    std::copy_n(sum, count, out + static_cast<std::size_t>(row) * width + begin);
   }
-  if (begin >= end) return;
-  float sum[kStrip] = {};
-  const std::size_t count = end - begin;
-  for (int k = first; k <= last; ++k) {
-    const float weight = kernel[static_cast<std::size_t>(k + radius)];
-    const float* term = in + k * stride + begin;
-    for (std::size_t j = 0; j < count; ++j) sum[j] += weight * term[j];
-  }
-  std::copy_n(sum, count, out + begin);
 }
 
 /// `out` must be zero.
