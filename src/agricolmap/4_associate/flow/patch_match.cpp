@@ -40,7 +40,7 @@ struct Candidate {
 };
 
 /// The last cells that a seed was compared with at this level. What it has costs less or as much
-/// and only falls, so they cannot win any more: half of all candidates need no comparison.
+/// and only falls, so they cannot win any more.
 class alignas(64) Tried {
  public:
   /// False when the cell was tried before; remembers it.
