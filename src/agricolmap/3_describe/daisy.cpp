@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "agricolmap/3_describe/descriptor_map.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -109,36 +110,85 @@ std::array<SamplePoint, kDaisyPoints> samplePoints(double radius) {
   return points;
 }
 
-/// Writes one cell's descriptor; returns its bits.
-std::uint32_t writeCell(const std::array<Ring, kDaisyRings>& rings,
-                        const std::array<SamplePoint, kDaisyPoints>& points, int row, int col,
-                        bool full, std::uint8_t* bytes) {
-  std::array<float, kDaisySize> values{};
-  std::uint32_t bits = 0;
-  float norm2 = 0.0F;
+/// A sample point of a row's cells: the part of the row for which it lies on the raster, and the
+/// ring's cells and shares there, which are those of column `first`.
+struct RowPoint {
+  int first = 0;
+  int last = 0;
+  const float* cells = nullptr;
+  const float* known = nullptr;
+};
+
+RowPoint rowPoint(const std::array<Ring, kDaisyRings>& rings, const SamplePoint& point, int row) {
+  const Ring& ring = rings[static_cast<std::size_t>(point.ring)];
+  const int r = row + point.row;
+  RowPoint result;
+  if (r < 0 || r >= ring.known.rows()) return result;
+  result.first = std::max(0, -point.col);
+  result.last = std::min(ring.known.cols(), ring.known.cols() - point.col);
+  if (result.first >= result.last) return {};
+  result.cells = ring.layers.cell(r, result.first + point.col);
+  result.known = ring.known.row(r) + result.first + point.col;
+  return result;
+}
+
+/// Bits and squared lengths of a row's descriptors. Point by point and not cell by cell: each sum
+/// waits for its last addition, but those of neighbouring cells do not wait for each other.
+void measureRow(const std::array<Ring, kDaisyRings>& rings,
+                const std::array<SamplePoint, kDaisyPoints>& points, int row,
+                std::vector<std::uint32_t>& bits, std::vector<float>& norm2) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const SamplePoint& point = points[i];
-    const Ring& ring = rings[static_cast<std::size_t>(point.ring)];
-    const int r = row + point.row;
-    const int c = col + point.col;
-    if (!ring.known.contains(r, c) || ring.known(r, c) < kKnownShare) continue;
-    bits |= 1U << i;
-    const float* cell = ring.layers.cell(r, c);
-    float* out = values.data() + i * kDaisyOrientations;
-    for (int k = 0; k < kDaisyOrientations; ++k) {
-      out[k] = cell[k];
-      norm2 += cell[k] * cell[k];
+    const RowPoint at = rowPoint(rings, points[i], row);
+    for (int col = at.first; col < at.last; ++col) {
+      if (at.known[col - at.first] < kKnownShare) continue;
+      const auto c = static_cast<std::size_t>(col);
+      const float* cell =
+          at.cells + static_cast<std::ptrdiff_t>(col - at.first) * kDaisyOrientations;
+      float sum = norm2[c];
+      for (int k = 0; k < kDaisyOrientations; ++k) sum += cell[k] * cell[k];
+      norm2[c] = sum;
+      bits[c] |= 1U << i;
     }
   }
-  // Points on unknown ground take no share of the unit length.
-  const auto count = static_cast<float>(std::popcount(bits));
-  const float scale = !full           ? kDaisyScalePartial
-                      : norm2 > kTiny ? kDaisyScaleFull * std::sqrt(count / kDaisyPoints / norm2)
-                                      : 0.0F;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    bytes[k] = static_cast<std::uint8_t>(std::min(255.0F, scale * values[k] + 0.5F));
+}
+
+/// Writes the descriptors of one row of cells.
+void writeRow(const std::array<Ring, kDaisyRings>& rings,
+              const std::array<SamplePoint, kDaisyPoints>& points, int row, bool full,
+              DescriptorMap& out) {
+  const Raster<float>& around = rings.front().known;
+  const auto cols = static_cast<std::size_t>(around.cols());
+  std::vector<std::uint32_t> bits(cols);
+  std::vector<float> norm2(cols);
+  measureRow(rings, points, row, bits, norm2);
+  std::vector<float> scale(cols, kDaisyScalePartial);
+  for (std::size_t c = 0; full && c < cols; ++c) {
+    // Points on unknown ground take no share of the unit length.
+    const auto count = static_cast<float>(std::popcount(bits[c]));
+    scale[c] =
+        norm2[c] > kTiny ? kDaisyScaleFull * std::sqrt(count / kDaisyPoints / norm2[c]) : 0.0F;
   }
-  return bits;
+  std::array<RowPoint, kDaisyPoints> at;
+  for (std::size_t i = 0; i < points.size(); ++i) at[i] = rowPoint(rings, points[i], row);
+  for (int col = 0; col < around.cols(); ++col) {
+    // What lies off the known ground is never matched.
+    if (around(row, col) < kKnownShare) continue;
+    const auto c = static_cast<std::size_t>(col);
+    const std::size_t cell = around.index(row, col);
+    out.known[cell] |= bits[c];
+    // Together first, so that the conversion vectorises.
+    std::array<float, kDaisySize> values{};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if ((bits[c] >> i & 1U) == 0) continue;
+      std::copy_n(at[i].cells + static_cast<std::ptrdiff_t>(col - at[i].first) * kDaisyOrientations,
+                  kDaisyOrientations, values.data() + i * kDaisyOrientations);
+    }
+    const float stretch = scale[c];
+    std::uint8_t* bytes = out.bytes.data() + cell * DescriptorMap::kStride;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      bytes[k] = static_cast<std::uint8_t>(std::min(255.0F, stretch * values[k] + 0.5F));
+    }
+  }
 }
 
 }  // namespace
@@ -164,17 +214,7 @@ void computeDaisy(std::span<const MaskedRaster> channels, const DaisyOptions& op
   const auto points = samplePoints(options.radius);
   parallelFor(
       static_cast<std::size_t>(weight.rows()),
-      [&](std::size_t r) {
-        const int row = static_cast<int>(r);
-        for (int col = 0; col < weight.cols(); ++col) {
-          // What lies off the known ground is never matched.
-          if (rings.front().known(row, col) < kKnownShare) continue;
-          const std::size_t i = weight.index(row, col);
-          out.known[i] |= writeCell(rings, points, row, col, full,
-                                    out.bytes.data() + i * DescriptorMap::kStride);
-        }
-      },
-      kRowGrain);
+      [&](std::size_t r) { writeRow(rings, points, static_cast<int>(r), full, out); }, kRowGrain);
 }
 
 }  // namespace agricolmap

@@ -8,6 +8,7 @@
 #include "agricolmap/2_grid/grid_map.hpp"
 #include "agricolmap/3_describe/daisy.hpp"
 #include "agricolmap/3_describe/fpfh.hpp"
+#include "agricolmap/3_describe/huge_vector.hpp"
 #include "agricolmap/core/options.hpp"
 
 namespace agricolmap {
@@ -20,16 +21,17 @@ struct DescribeOptions {
 void describe(OptionTable& table, DescribeOptions& options);
 
 /// Descriptors of every cell, as bytes. A cell's `kStride` bytes are DAISY's 128 (daisy.hpp),
-/// FPFH's 33 (fpfh.hpp) and 15 of padding, all zero where there is nothing to describe.
+/// FPFH's 33 (fpfh.hpp) and 31 of padding, all zero where there is nothing to describe. The padding
+/// makes a cell three whole cache lines, DAISY's two and FPFH's one.
 struct DescriptorMap {
   static constexpr int kFpfhOffset = kDaisySize;
-  static constexpr int kStride = 176;
+  static constexpr int kStride = 192;
   /// Bits 0–15 of `known`: DAISY's sample points that lie on known ground; bit 16: FPFH.
   static constexpr std::uint32_t kDaisyBits = 0xFFFF;
   static constexpr std::uint32_t kFpfhBit = 1U << 16;
 
   GridFrame frame;
-  std::vector<std::uint8_t> bytes;
+  HugeVector<std::uint8_t> bytes;
   std::vector<std::uint32_t> known;  ///< per cell
 
   /// True where the cell's own surroundings are known; single empty cells are bridged.
@@ -39,6 +41,10 @@ struct DescriptorMap {
            static_cast<std::size_t>(col);
   }
   const std::uint8_t* daisy(std::size_t cell) const { return bytes.data() + cell * kStride; }
+  /// Asks for a cell that will be read soon.
+  void prefetch(std::size_t cell) const {
+    for (int line = 0; line < kStride; line += 64) __builtin_prefetch(daisy(cell) + line);
+  }
   const std::uint8_t* fpfh(std::size_t cell) const { return daisy(cell) + kFpfhOffset; }
 };
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "agricolmap/3_describe/huge_vector.hpp"
 #include "agricolmap/core/raster.hpp"
 
 namespace agricolmap {
@@ -19,7 +20,7 @@ struct Layers {
   int rows = 0;
   int cols = 0;
   int depth = 0;
-  std::vector<float> data;
+  HugeVector<float> data;
 
   Layers() = default;
   Layers(int r, int c, int d)

@@ -35,6 +35,11 @@ struct MaskTable {
 };
 constexpr MaskTable kMasks;
 
+static_assert(kDaisySize == 2 * 64, "a half of DAISY is a cache line");
+
+// daisyDifference: of the sample points in `bits`, of which half 0 or 1 of the descriptor has
+// eight.
+
 #ifdef __AVX2__
 
 __m256i load(const std::uint8_t* p) {
@@ -49,9 +54,9 @@ int sumLanes(__m256i sums) {
   return _mm_cvtsi128_si32(half) + _mm_extract_epi32(half, 2);
 }
 
-int daisyDifference(const std::uint8_t* a, const std::uint8_t* b, std::uint32_t bits) {
+int daisyDifference(const std::uint8_t* a, const std::uint8_t* b, std::uint32_t bits, int half) {
   __m256i sum = _mm256_setzero_si256();
-  for (std::ptrdiff_t block = 0; block < kDaisySize / 32; ++block) {
+  for (std::ptrdiff_t block = 2 * half; block < 2 * half + 2; ++block) {
     const __m256i mask = load(kMasks.rows[(bits >> (4 * block)) & 15U].data());
     sum = _mm256_add_epi64(sum, _mm256_sad_epu8(_mm256_and_si256(mask, load(a + 32 * block)),
                                                 _mm256_and_si256(mask, load(b + 32 * block))));
@@ -66,9 +71,9 @@ int fpfhDifference(const std::uint8_t* a, const std::uint8_t* b) {
 
 #else
 
-int daisyDifference(const std::uint8_t* a, const std::uint8_t* b, std::uint32_t bits) {
+int daisyDifference(const std::uint8_t* a, const std::uint8_t* b, std::uint32_t bits, int half) {
   int sum = 0;
-  for (std::ptrdiff_t block = 0; block < kDaisySize / 32; ++block) {
+  for (std::ptrdiff_t block = 2 * half; block < 2 * half + 2; ++block) {
     const auto& mask = kMasks.rows[(bits >> (4 * block)) & 15U];
     for (int k = 0; k < 32; ++k) {
       const int i = 32 * block + k;
@@ -107,13 +112,18 @@ bool MatchCost::usable(std::size_t moving_cell) const {
                      : (known & 1U) != 0 && points >= kLeastPoints;
 }
 
-float MatchCost::operator()(std::size_t fixed_cell, std::size_t moving_cell) const {
+float MatchCost::below(std::size_t fixed_cell, std::size_t moving_cell, float limit) const {
   if (!usable(moving_cell)) return kImpossible;
   const std::uint32_t known = moving_->known[moving_cell];
   const std::uint32_t points = known & DescriptorMap::kDaisyBits;
-  float cost = daisy_scale_[static_cast<std::size_t>(std::popcount(points))] *
-               static_cast<float>(
-                   daisyDifference(fixed_->daisy(fixed_cell), moving_->daisy(moving_cell), points));
+  const float scale = daisy_scale_[static_cast<std::size_t>(std::popcount(points))];
+  const std::uint8_t* fixed = fixed_->daisy(fixed_cell);
+  const std::uint8_t* moving = moving_->daisy(moving_cell);
+  int difference = daisyDifference(fixed, moving, points, 0);
+  if (scale * static_cast<float>(difference) >= limit) return limit;
+  difference += daisyDifference(fixed, moving, points, 1);
+  float cost = scale * static_cast<float>(difference);
+  if (cost >= limit) return limit;
   if ((known & DescriptorMap::kFpfhBit) != 0) {
     cost += fpfh_scale_ * static_cast<float>(
                               fpfhDifference(fixed_->fpfh(fixed_cell), moving_->fpfh(moving_cell)));

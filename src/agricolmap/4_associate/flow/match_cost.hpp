@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "agricolmap/3_describe/descriptor_map.hpp"
 
@@ -27,7 +28,12 @@ class MatchCost {
   /// True when the moving cell has enough known surroundings to be matched.
   bool usable(std::size_t moving_cell) const;
   /// kImpossible when the moving cell is not usable.
-  float operator()(std::size_t fixed_cell, std::size_t moving_cell) const;
+  float operator()(std::size_t fixed_cell, std::size_t moving_cell) const {
+    return below(fixed_cell, moving_cell, std::numeric_limits<float>::infinity());
+  }
+  /// The cost where it is below `limit`, else anything that is not: a comparison ends as soon as
+  /// its sum, which only grows, has reached the limit, and leaves the rest of the cell unread.
+  float below(std::size_t fixed_cell, std::size_t moving_cell, float limit) const;
 
  private:
   const DescriptorMap* fixed_;

@@ -12,7 +12,21 @@ Reach::Reach(const SearchSpace& space, const Eigen::Affine2d& warp)
     : space_(space),
       warp_(warp),
       unwarp_(warp.inverse()),
-      yaw_(space.uncertainty.heading_deg * std::numbers::pi / 180.0) {}
+      yaw_(space.uncertainty.heading_deg * std::numbers::pi / 180.0) {
+  // The image is linear in the scales and nearly so in the yaw: corners and centre span it; wide
+  // headings need the steps between.
+  const int steps = std::max(2, static_cast<int>(std::ceil(2.0 * yaw_ / 0.2)));
+  const double widest = std::exp(logScaleLimit(space_.uncertainty));
+  for (int i = 0; i <= steps; ++i) {
+    const double yaw = -yaw_ + 2.0 * yaw_ * i / steps;
+    for (const double scale_x : {1.0 / widest, widest}) {
+      for (const double scale_y : {1.0 / widest, widest}) {
+        const Eigen::Matrix2d m = linear(yaw, scale_x, scale_y);
+        extremes_.push_back({m, m.inverse()});
+      }
+    }
+  }
+}
 
 Eigen::Matrix2d Reach::linear(double yaw, double scale_x, double scale_y) const {
   return rotation2(yaw) * space_.scale_axes * Eigen::Vector2d(scale_x, scale_y).asDiagonal() *
@@ -46,25 +60,14 @@ Eigen::Vector2d Reach::sampleBackward(const Eigen::Vector2d& p, Random& random) 
 
 template <typename Map>
 Box2 Reach::boxOver(const Map& map) const {
-  // The image is linear in the scales and nearly so in the yaw: corners and centre span it; wide
-  // headings need the steps between.
-  const int steps = std::max(2, static_cast<int>(std::ceil(2.0 * yaw_ / 0.2)));
-  const double widest = std::exp(logScaleLimit(space_.uncertainty));
   Box2 box;
-  for (int i = 0; i <= steps; ++i) {
-    const double yaw = -yaw_ + 2.0 * yaw_ * i / steps;
-    for (const double scale_x : {1.0 / widest, widest}) {
-      for (const double scale_y : {1.0 / widest, widest}) {
-        box.extend(map(linear(yaw, scale_x, scale_y)));
-      }
-    }
-  }
+  for (const Extreme& extreme : extremes_) box.extend(map(extreme));
   return box;
 }
 
 Box2 Reach::forwardBox(const Eigen::Vector2d& q) const {
-  Box2 box = boxOver([&](const Eigen::Matrix2d& m) -> Eigen::Vector2d {
-    return space_.centre + m * (unwarp_ * q - space_.centre);
+  Box2 box = boxOver([&](const Extreme& m) -> Eigen::Vector2d {
+    return space_.centre + m.linear * (unwarp_ * q - space_.centre);
   });
   box.min().array() -= space_.uncertainty.translation;
   box.max().array() += space_.uncertainty.translation;
@@ -76,8 +79,8 @@ Box2 Reach::backwardBox(const Eigen::Vector2d& p) const {
   Box2 box;
   for (const double x : {-shift, shift}) {
     for (const double y : {-shift, shift}) {
-      box.extend(boxOver([&](const Eigen::Matrix2d& m) -> Eigen::Vector2d {
-        return warp_ * (space_.centre + m.inverse() * (p - space_.centre - Eigen::Vector2d(x, y)));
+      box.extend(boxOver([&](const Extreme& m) -> Eigen::Vector2d {
+        return warp_ * (space_.centre + m.inverse * (p - space_.centre - Eigen::Vector2d(x, y)));
       }));
     }
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "agricolmap/4_associate/association.hpp"
 #include "agricolmap/core/random.hpp"
@@ -32,10 +33,17 @@ class Reach {
   template <typename Map>
   Box2 boxOver(const Map& map) const;
 
+  /// A linear map at a limit of what is allowed, and its inverse.
+  struct Extreme {
+    Eigen::Matrix2d linear;
+    Eigen::Matrix2d inverse;
+  };
+
   SearchSpace space_;
   Eigen::Affine2d warp_;
   Eigen::Affine2d unwarp_;
   double yaw_;
+  std::vector<Extreme> extremes_;  ///< they span the boxes of all points
 };
 
 }  // namespace agricolmap

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 
@@ -27,12 +28,13 @@ constexpr std::size_t kCandidates = 12;  ///< bins drawn in to placements
 constexpr int kDrawSteps = 12;
 constexpr double kWidestBins = 2048.0;  ///< per axis, a guard against absurd searches
 
-/// Matches about a pivot: single precision is plenty for metres.
+/// Matches about a pivot: single precision is plenty for metres. By coordinates, so that loops
+/// vectorise.
 struct Pairs {
   Eigen::Vector2d pivot;
-  std::vector<Eigen::Vector2f> q;  ///< moving − pivot
-  std::vector<Eigen::Vector2f> p;  ///< fixed − pivot
-  Eigen::Vector2d half_extent;     ///< of q along the axes [m]
+  std::vector<float> qx, qy;    ///< moving − pivot
+  std::vector<float> px, py;    ///< fixed − pivot
+  Eigen::Vector2d half_extent;  ///< of q along the axes [m]
 };
 
 Pairs pairsOf(std::span<const Match> matches, const Eigen::Matrix2d& axes) {
@@ -42,8 +44,12 @@ Pairs pairsOf(std::span<const Match> matches, const Eigen::Matrix2d& axes) {
   pairs.pivot = axes * box.center();
   pairs.half_extent = 0.5 * box.sizes();
   for (const Match& match : matches) {
-    pairs.q.push_back((match.moving - pairs.pivot).cast<float>());
-    pairs.p.push_back((match.fixed - pairs.pivot).cast<float>());
+    const Eigen::Vector2f q = (match.moving - pairs.pivot).cast<float>();
+    const Eigen::Vector2f p = (match.fixed - pairs.pivot).cast<float>();
+    pairs.qx.push_back(q.x());
+    pairs.qy.push_back(q.y());
+    pairs.px.push_back(p.x());
+    pairs.py.push_back(p.y());
   }
   return pairs;
 }
@@ -97,35 +103,75 @@ class ShiftVote {
     rows_ = static_cast<int>(count.y()) + 2;
   }
 
-  Peak vote(const Eigen::Matrix2d& linear, std::vector<std::uint16_t>& bins) const {
-    bins.assign(static_cast<std::size_t>(rows_) * cols_, 0);
-    const Eigen::Matrix2f m = linear.cast<float>();
-    const float scale = 1.0F / bin_;
-    for (std::size_t i = 0; i < pairs_.q.size(); ++i) {
-      const Eigen::Vector2f place = (pairs_.p[i] - m * pairs_.q[i] - corner_) * scale;
-      const int col = static_cast<int>(std::floor(place.x()));
-      const int row = static_cast<int>(std::floor(place.y()));
-      if (col < 0 || row < 0 || col >= cols_ || row >= rows_) continue;
-      std::uint16_t& bin = bins[static_cast<std::size_t>(row) * cols_ + col];
-      if (bin < 0xFFFF) ++bin;
-    }
-    Peak best;
-    for (int row = 0; row + 1 < rows_; ++row) {
-      const std::uint16_t* here = bins.data() + static_cast<std::size_t>(row) * cols_;
-      const std::uint16_t* above = here + cols_;
-      for (int col = 0; col + 1 < cols_; ++col) {
-        const int votes = here[col] + here[col + 1] + above[col] + above[col + 1];
-        if (votes <= best.votes) continue;
-        best.votes = votes;
-        best.shift = (corner_ + bin_ * Eigen::Vector2f(static_cast<float>(col + 1),
-                                                       static_cast<float>(row + 1)))
-                         .cast<double>();
-      }
-    }
-    return best;
+  /// Memory of a vote, used again by the next.
+  struct Scratch {
+    std::vector<std::uint16_t> bins;
+    std::vector<std::uint32_t> bin_of;  ///< per match
+  };
+
+  Peak vote(const Eigen::Matrix2d& linear, Scratch& scratch) const {
+    count(linear, scratch);
+    // Sums of four bins fit into 16 bits where there are no more matches than that.
+    return pairs_.qx.size() <= 0xFFFF ? fullest<std::uint16_t>(scratch.bins)
+                                      : fullest<std::uint32_t>(scratch.bins);
   }
 
  private:
+  void count(const Eigen::Matrix2d& linear, Scratch& scratch) const {
+    // Matches outside the window vote for one more bin that is never looked at: no branch.
+    const std::uint32_t outside = static_cast<std::uint32_t>(rows_) * cols_;
+    scratch.bins.assign(outside + std::size_t{1}, 0);
+    scratch.bin_of.resize(pairs_.qx.size());
+    const Eigen::Matrix2f m = linear.cast<float>();
+    const float scale = 1.0F / bin_;
+    const float* qx = pairs_.qx.data();
+    const float* qy = pairs_.qy.data();
+    const float* px = pairs_.px.data();
+    const float* py = pairs_.py.data();
+    std::uint32_t* bin_of = scratch.bin_of.data();
+    for (std::size_t i = 0; i < pairs_.qx.size(); ++i) {
+      const float x = (px[i] - (m(0, 1) * qy[i] + m(0, 0) * qx[i]) - corner_.x()) * scale;
+      const float y = (py[i] - (m(1, 1) * qy[i] + m(1, 0) * qx[i]) - corner_.y()) * scale;
+      const int col = static_cast<int>(std::floor(x));
+      const int row = static_cast<int>(std::floor(y));
+      const bool inside = (col >= 0) & (row >= 0) & (col < cols_) & (row < rows_);
+      bin_of[i] = inside ? static_cast<std::uint32_t>(row * cols_ + col) : outside;
+    }
+    for (const std::uint32_t i : scratch.bin_of) {
+      std::uint16_t& bin = scratch.bins[i];
+      bin = static_cast<std::uint16_t>(bin + (bin < 0xFFFF ? 1 : 0));
+    }
+  }
+
+  /// The first of the fullest 2 × 2 bins: row by row the largest number, then its column.
+  template <typename Sum>
+  Peak fullest(const std::vector<std::uint16_t>& bins) const {
+    const auto votesAt = [&](const std::uint16_t* here, int col) {
+      const std::uint16_t* above = here + cols_;
+      return static_cast<Sum>(Sum{here[col]} + here[col + 1] + above[col] + above[col + 1]);
+    };
+    Sum most = 0;
+    int best_row = -1;
+    for (int row = 0; row + 1 < rows_; ++row) {
+      const std::uint16_t* here = bins.data() + static_cast<std::size_t>(row) * cols_;
+      Sum most_here = 0;
+      for (int col = 0; col + 1 < cols_; ++col) most_here = std::max(most_here, votesAt(here, col));
+      if (most_here <= most) continue;
+      most = most_here;
+      best_row = row;
+    }
+    Peak best;
+    if (best_row < 0) return best;
+    const std::uint16_t* here = bins.data() + static_cast<std::size_t>(best_row) * cols_;
+    int col = 0;
+    while (votesAt(here, col) != most) ++col;
+    best.votes = static_cast<int>(most);
+    best.shift = (corner_ + bin_ * Eigen::Vector2f(static_cast<float>(col + 1),
+                                                   static_cast<float>(best_row + 1)))
+                     .cast<double>();
+    return best;
+  }
+
   const Pairs& pairs_;
   Eigen::Vector2f corner_;
   float bin_;
@@ -209,8 +255,8 @@ VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& 
   parallelFor(
       all.size(),
       [&](std::size_t i) {
-        thread_local std::vector<std::uint16_t> bins;
-        peaks[i] = vote.vote(linearOf(all[i], axes), bins);
+        thread_local ShiftVote::Scratch scratch;
+        peaks[i] = vote.vote(linearOf(all[i], axes), scratch);
         peaks[i].hypothesis = i;
       },
       8);
