@@ -18,6 +18,9 @@ void describe(OptionTable& table, DenseRefineOptions& options) {
                "pull towards the start of the level, as a share of the data's curvature");
   table.number("max_move", options.max_move, 0.1, 1000.0, "cells",
                "a level that moves a corner further has left its basin: diverged");
+  table.integer("hops", options.hops, 0, 100, "",
+                "rounds of starting again beside the best, on the last level but one");
+  table.number("hop", options.hop, 0.1, 10.0, "cells", "how far beside it");
 }
 
 namespace {

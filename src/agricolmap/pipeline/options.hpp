@@ -30,7 +30,7 @@ enum class RefineKind { kDenseCpd, kDense, kCpd, kNone };
 struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
-  RefineKind refine = RefineKind::kDense;
+  RefineKind refine = RefineKind::kDenseCpd;
   PriorUncertainty prior;
   LevelOptions level;
   GridOptions grid;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "agricolmap/6_refine/basins.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
@@ -16,6 +17,9 @@ namespace {
 constexpr std::array<int, 2> kFactors = {6, 3};
 constexpr std::size_t kRankingLevel = 1;
 constexpr std::array<int, 2> kFinerFactors = {2, 1};
+/// At which neighbouring basins are tried: finer ones are narrower than what is to be left, coarser
+/// ones show too little of single plants (soybean went wrong there).
+constexpr int kBasinFactor = 2;
 /// At which blocks are compared for the uncertainty.
 constexpr int kUncertaintyFactor = 2;
 /// Finer cells must have at least this share of the coarser ones' overlap.
@@ -58,10 +62,10 @@ PoseRefinement::PoseRefinement(const GridMap& fixed, const GridMap& moving,
                                            levels_[kRankingLevel].moving, options.evidence);
 }
 
-std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level,
-                                                    const RefinedPose& start) const {
-  const DenseRefineResult dense =
-      refineDense(level.fixed, level.moving, start.pose, options_.dense);
+std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level, const RefinedPose& start,
+                                                    bool across_basins) const {
+  const auto refine = across_basins ? refineAcrossBasins : refineDense;
+  const DenseRefineResult dense = refine(level.fixed, level.moving, start.pose, options_.dense);
   if (dense.status != RefineStatus::kConverged) return std::nullopt;
   return RefinedPose{dense.fixed_from_moving, start.significance, dense.overlap};
 }
@@ -113,7 +117,8 @@ RefinedPose PoseRefinement::refineFinely(const RefinedPose& start) const {
   // What the finest cells cannot follow (a map with fewer points than cells has hardly two seen
   // side by side) stays as the coarser ones left it; whether it is right is for the verdict to say.
   for (const int factor : kFinerFactors) {
-    const std::optional<RefinedPose> finer = refineAt(levelUnder(best.pose, factor), best);
+    const std::optional<RefinedPose> finer =
+        refineAt(levelUnder(best.pose, factor), best, factor == kBasinFactor);
     if (!finer || finer->overlap < kLeastFinerOverlap * best.overlap) break;
     best = *finer;
   }

@@ -62,7 +62,8 @@ class PoseRefinement {
   GridMap fixedUnder(const Eigen::Affine2d& pose, double rim) const;
   /// Both maps at `factor` grid cells, the fixed one only where the pose puts the moving one.
   Level levelUnder(const Eigen::Affine2d& pose, int factor) const;
-  std::optional<RefinedPose> refineAt(const Level& level, const RefinedPose& start) const;
+  std::optional<RefinedPose> refineAt(const Level& level, const RefinedPose& start,
+                                      bool across_basins = false) const;
   /// The best of the poses and its rivals, at the ranking level.
   RefineOutcome rank(const std::vector<std::optional<RefinedPose>>& poses) const;
   RefineOutcome refineDensely(std::vector<std::optional<RefinedPose>> poses,
