@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "page/paper_figures.hpp"
 #include "page/statistics.hpp"
@@ -34,6 +36,15 @@ RowTest inCell(const std::string& method, double setting) {
       [method, setting](const Row& row) { return row.method == method && row.setting == setting; };
 }
 
+/// `default (32)`: on how many pairs the method was run.
+std::string withPairs(const std::string& method, const std::vector<Row>& rows) {
+  std::set<std::pair<std::string, int>> pairs;
+  for (const Row& row : rows) {
+    if (row.method == method) pairs.insert({row.dataset, row.seed});
+  }
+  return fmt::format("{} ({})", method, pairs.size());
+}
+
 Table successTable(const std::vector<Row>& rows, const std::string& experiment,
                    const std::string& kind, double scale) {
   std::vector<Row> here;
@@ -45,12 +56,12 @@ Table successTable(const std::vector<Row>& rows, const std::string& experiment,
   table.caption =
       fmt::format("{} error at scale error {:.0f} %, {}",
                   experiment == "translation" ? "Translation" : "Heading", 100.0 * scale, kind);
-  table.head = {"method"};
+  table.head = {"method (pairs)"};
   const std::vector<double> settings =
       distinctNumbers(here, &Row::setting, [](const Row&) { return true; });
   for (const double setting : settings) table.head.push_back(fmt::format("{:g} {}", setting, unit));
   for (const std::string& method : methodsOf(here)) {
-    std::vector<TableCell> row = {{method}};
+    std::vector<TableCell> row = {{withPairs(method, here)}};
     for (const double setting : settings) {
       row.push_back({successText(groupOf(here, inCell(method, setting))),
                      scale == 0.0 ? paperSuccess(experiment, method, setting) : std::string()});
@@ -92,7 +103,7 @@ void addJoint(const std::vector<Row>& rows, Document& document) {
     if (row.experiment == "joint") here.push_back(row);
   }
   if (here.empty()) return;
-  Table table{"Success with all errors at once", {"method"}, {}};
+  Table table{"Success with all errors at once", {"method (pairs)"}, {}};
   const std::vector<double> settings =
       distinctNumbers(here, &Row::setting, [](const Row&) { return true; });
   for (const std::string& kind : kindsOf(here)) {
@@ -102,7 +113,7 @@ void addJoint(const std::vector<Row>& rows, Document& document) {
     }
   }
   for (const std::string& method : methodsOf(here)) {
-    std::vector<TableCell> row = {{method}};
+    std::vector<TableCell> row = {{withPairs(method, here)}};
     for (const std::string& kind : kindsOf(here)) {
       for (const double share : settings) {
         row.push_back({successText(groupOf(here, [&](const Row& one) {
@@ -265,11 +276,13 @@ Document comparisonDocument(const std::vector<Row>& rows, const std::string& ide
     last = std::max(last, row.seed);
   }
   document.subtitle = fmt::format(
-      "{} runs: {}. Written by agricolmap_compare (-o DIR --pairs {} --first-seed {}) from rows "
-      "of: "
-      "{}. Simulated data sets: field and sensors are. Semi-real ones: strips cut from real "
-      "imagery, "
-      "the robot's view of it simulated. {}Seeds 31 and 51 to 53 served to tune the other methods.",
+      "{} runs: {}. Written by agricolmap_compare (-o DIR --pairs {} --first-seed {}; not all "
+      "methods "
+      "on all pairs) from rows of: {}. Simulated data sets: field and sensors are. Semi-real ones: "
+      "strips cut from real imagery, the robot's view of it simulated. How the two views of a pair "
+      "differ (plants, light, wind, colours, noise, drift: compare/runner/views.cpp) is drawn for "
+      "each pair; the final settings are none of those that methods were improved on. {}Seeds 31 "
+      "and 51 to 53 served to tune the other methods.",
       rows.size(), pairsText(rows), last - first + 1, first, identity, realText(rows));
   document.blocks.emplace_back(Paragraph{summarySentences(rows)});
   addSuccess(rows, document);

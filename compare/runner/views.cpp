@@ -47,7 +47,9 @@ const std::vector<Drawn>& fieldSettings() {
                                          {"views.overcast", {0.1, 0.5}, {0.0, 0.3, 0.8}},
                                          {"views.weeds_pulled", {0.0, 0.4}, {0.2, 0.5}},
                                          {"uav.height_noise", {0.004, 0.007}, {0.005, 0.009}},
-                                         {"uav.dome", {0.02, 0.06}, {0.04, 0.08}},
+                                         // Half of it is in every method's height error, as the
+                                         // drone's map itself is off by so much.
+                                         {"uav.dome", {0.02, 0.04}, {0.03, 0.05}},
                                          {"uav.holes", {0.01, 0.03}, {0.02, 0.04}},
                                          {"uav.colour.exposure", {0.75, 1.15}, {0.9, 1.4}},
                                          {"uav.colour.white_balance", {0.05, 0.15}, {0.10, 0.20}},
