@@ -193,7 +193,7 @@ void addFlags(CLI::App& app, Arguments& arguments) {
                  "--datasets nothing else is compared on")
       ->allow_extra_args(false);
   app.add_option("--pairs", arguments.pairs,
-                 "Pairs per data set; of a real one, wrong guesses for its pair [10; quick: 1]")
+                 "Pairs per data set; of a real one, wrong guesses for its pair [2; quick: 1]")
       ->check(CLI::Range(1, 100000));
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first pair [80001]")
       ->check(CLI::Range(0, 1000000000));

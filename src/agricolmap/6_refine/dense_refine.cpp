@@ -19,7 +19,7 @@ void describe(OptionTable& table, DenseRefineOptions& options) {
   table.number("max_move", options.max_move, 0.1, 1000.0, "cells",
                "a level that moves a corner further has left its basin: diverged");
   table.integer("hops", options.hops, 0, 100, "",
-                "rounds of starting again beside the best, on the last level but one");
+                "rounds of starting again beside the best, while that helps");
   table.number("hop", options.hop, 0.1, 10.0, "cells", "how far beside it");
 }
 

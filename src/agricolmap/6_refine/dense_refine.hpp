@@ -17,8 +17,8 @@ struct DenseRefineOptions {
   double stop = 0.002;         ///< done when no corner moves by more than this share of a cell
   double prior_weight = 1e-3;  ///< pull towards the level's start, share of the data's curvature
   double max_move = 4.0;       ///< a level may move a corner by this many cells at most
-  int hops = 2;                ///< rounds of looking into neighbouring basins, see basins.hpp
-  double hop = 1.0;            ///< how far they are looked for [cells]
+  int hops = 8;      ///< rounds of looking into neighbouring basins at most, see basins.hpp
+  double hop = 1.0;  ///< how far they are looked for [cells]
 };
 void describe(OptionTable& table, DenseRefineOptions& options);
 

@@ -144,7 +144,10 @@ std::optional<bool> PairPlacer::straighten(const RefineOutcome& refined, Judged&
   const auto take = [&](Judged& next) {
     const Evidence& now = next.finding.evidence;
     const Evidence& before = judged.finding.evidence;
-    if (now.agreeing < before.agreeing || now.significance <= before.significance) return;
+    if (now.agreeing < before.agreeing || now.significance <= before.significance ||
+        next.correlation <= judged.correlation) {
+      return;
+    }
     judged = std::move(next);
     changed = true;
   };

@@ -13,12 +13,13 @@ namespace agricolmap {
 namespace {
 
 // Cells of a level in grid cells. With the default grid: 12 and 6 cm, at which all placements are
-// refined over the whole maps and ranked at the second; 4 and 2 cm for the best.
+// refined over the whole maps and ranked at the second; 6 cm again, 4 and 2 cm for the best, with
+// what plants hide filled in.
 constexpr std::array<int, 2> kFactors = {6, 3};
 constexpr std::size_t kRankingLevel = 1;
-constexpr std::array<int, 2> kFinerFactors = {2, 1};
-/// At which neighbouring basins are tried: finer ones are narrower than what is to be left, coarser
-/// ones show too little of single plants (soybean went wrong there).
+constexpr std::array<int, 3> kFinerFactors = {3, 2, 1};
+/// The finest level whose result is compared with what lies beside it: neighbouring basins of finer
+/// ones are nearer than plants are.
 constexpr int kBasinFactor = 2;
 /// At which blocks are compared for the uncertainty.
 constexpr int kUncertaintyFactor = 2;
@@ -118,7 +119,7 @@ RefinedPose PoseRefinement::refineFinely(const RefinedPose& start) const {
   // side by side) stays as the coarser ones left it; whether it is right is for the verdict to say.
   for (const int factor : kFinerFactors) {
     const std::optional<RefinedPose> finer =
-        refineAt(levelUnder(best.pose, factor), best, factor == kBasinFactor);
+        refineAt(levelUnder(best.pose, factor), best, factor >= kBasinFactor);
     if (!finer || finer->overlap < kLeastFinerOverlap * best.overlap) break;
     best = *finer;
   }
