@@ -1,7 +1,7 @@
 // Ground that a robot's camera does not see because a plant stands before it, filled in. Of cells
 // behind a plant only what rises above the line of sight has points, so the map shows them greener
 // and higher than they are, always on the far side of the rows: on strips of simulated crops that
-// made the refinement's scale across the strip 1 to 2 % too small.
+// made the refinement's scale across the strip up to 2 % too small.
 #pragma once
 
 #include "agricolmap/2_grid/grid_map.hpp"
