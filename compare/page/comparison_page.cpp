@@ -281,8 +281,8 @@ Document comparisonDocument(const std::vector<Row>& rows, const std::string& ide
       "on all pairs) from rows of: {}. Simulated data sets: field and sensors are. Semi-real ones: "
       "strips cut from real imagery, the robot's view of it simulated. How the two views of a pair "
       "differ (plants, light, wind, colours, noise, drift: compare/runner/views.cpp) is drawn for "
-      "each pair; the final settings are none of those that methods were improved on. {}Seeds 31 "
-      "and 51 to 53 served to tune the other methods.",
+      "each pair; the final settings share no value with those for development. {}Seeds 31 and 51 "
+      "to 53 served to tune the other methods.",
       rows.size(), pairsText(rows), last - first + 1, first, identity, realText(rows));
   document.blocks.emplace_back(Paragraph{summarySentences(rows)});
   addSuccess(rows, document);
