@@ -6,9 +6,9 @@
 
 #include "agricolmap/2_grid/data_term.hpp"
 #include "agricolmap/2_grid/grid_map.hpp"
+#include "agricolmap/3_describe/aligned_vector.hpp"
 #include "agricolmap/3_describe/daisy.hpp"
 #include "agricolmap/3_describe/fpfh.hpp"
-#include "agricolmap/3_describe/huge_vector.hpp"
 #include "agricolmap/core/options.hpp"
 
 namespace agricolmap {
@@ -31,7 +31,7 @@ struct DescriptorMap {
   static constexpr std::uint32_t kFpfhBit = 1U << 16;
 
   GridFrame frame;
-  HugeVector<std::uint8_t> bytes;
+  AlignedVector<std::uint8_t> bytes;
   std::vector<std::uint32_t> known;  ///< per cell
 
   /// True where the cell's own surroundings are known; single empty cells are bridged.

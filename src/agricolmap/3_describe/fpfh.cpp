@@ -197,7 +197,7 @@ void spfhRow(const Surface& s, const std::vector<Neighbour>& neighbours, int row
 }
 
 struct Spfh {
-  HugeVector<std::uint8_t> counts;
+  std::vector<std::uint8_t> counts;
   std::vector<std::uint8_t> pairs;
 };
 
@@ -259,7 +259,7 @@ void computeFpfh(const MaskedRaster& height, double cell, const FpfhOptions& opt
   const auto weights = sumWeights(neighbours);
   const Surface surface = surfaceOf(height, cell);
   const std::size_t cells = height.value.size();
-  Spfh spfh{HugeVector<std::uint8_t>(cells * kPadded), std::vector<std::uint8_t>(cells)};
+  Spfh spfh{std::vector<std::uint8_t>(cells * kPadded), std::vector<std::uint8_t>(cells)};
   parallelFor((static_cast<std::size_t>(rows) + kRowGrain - 1) / kRowGrain, [&](std::size_t band) {
     const auto width = static_cast<std::size_t>(cols);
     BinRow bins{std::vector<int>(width), std::vector<int>(width), std::vector<int>(width),

@@ -85,7 +85,7 @@ void smoothInto(const float* in, float* out, int rows, int cols, double sigma) {
   const int radius = static_cast<int>(kernel.size() / 2);
   const std::size_t width = static_cast<std::size_t>(cols) * kDepth;
   const auto count = static_cast<std::size_t>(rows);
-  HugeVector<float> across(width * count);
+  std::vector<float> across(width * count);
   std::vector<Span> spans(count);
   parallelFor(
       count,

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "agricolmap/3_describe/huge_vector.hpp"
 #include "agricolmap/core/raster.hpp"
 
 namespace agricolmap {
@@ -20,7 +19,7 @@ struct Layers {
   int rows = 0;
   int cols = 0;
   int depth = 0;
-  HugeVector<float> data;
+  std::vector<float> data;
 
   Layers() = default;
   Layers(int r, int c, int d)

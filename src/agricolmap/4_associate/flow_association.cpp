@@ -5,7 +5,6 @@
 #include <iterator>
 #include <numbers>
 
-#include "agricolmap/3_describe/huge_vector.hpp"
 #include "agricolmap/4_associate/flow/warp.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
@@ -219,7 +218,6 @@ class FlowSearch {
     return result;
   }
 
-  KeepHugeMemory keep_memory_;  // from one warp's descriptors to the next
   const GridMap& moving_;
   const SearchSpace& space_;
   const FlowAssociationOptions& options_;
