@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
-#include <utility>
 
 #include "page/paper_figures.hpp"
 #include "page/statistics.hpp"
@@ -38,11 +36,8 @@ RowTest inCell(const std::string& method, double setting) {
 
 /// `default (32)`: on how many pairs the method was run.
 std::string withPairs(const std::string& method, const std::vector<Row>& rows) {
-  std::set<std::pair<std::string, int>> pairs;
-  for (const Row& row : rows) {
-    if (row.method == method) pairs.insert({row.dataset, row.seed});
-  }
-  return fmt::format("{} ({})", method, pairs.size());
+  return fmt::format("{} ({})", method,
+                     pairsOf(rows, [&](const Row& row) { return row.method == method; }).size());
 }
 
 Table successTable(const std::vector<Row>& rows, const std::string& experiment,

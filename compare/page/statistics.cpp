@@ -103,6 +103,16 @@ Group groupOf(const std::vector<Row>& rows, const RowTest& test) {
   return group;
 }
 
+PairKey pairOf(const Row& row) { return {row.dataset, row.seed}; }
+
+std::set<PairKey> pairsOf(const std::vector<Row>& rows, const RowTest& test) {
+  std::set<PairKey> pairs;
+  for (const Row& row : rows) {
+    if (test(row)) pairs.insert(pairOf(row));
+  }
+  return pairs;
+}
+
 std::vector<std::string> distinct(const std::vector<Row>& rows,
                                   const std::function<std::string(const Row&)>& column) {
   std::vector<std::string> values;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "campaign_summary.hpp"
@@ -31,6 +33,11 @@ struct Group {
 };
 
 Group groupOf(const std::vector<Row>& rows, const RowTest& test);
+
+/// What makes two rows of one setting comparable: the same pair of clouds, by data set and seed.
+using PairKey = std::pair<std::string, int>;
+PairKey pairOf(const Row& row);
+std::set<PairKey> pairsOf(const std::vector<Row>& rows, const RowTest& test);
 
 /// Values of one column of the rows in order, each once.
 std::vector<std::string> distinct(const std::vector<Row>& rows,

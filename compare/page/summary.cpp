@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "page/statistics.hpp"
@@ -35,18 +34,6 @@ std::string placeText(const std::string& kind, const std::string& experiment, do
   if (experiment == "accuracy")
     return fmt::format("accuracy at {:.0f} % scale, {}", 100 * scale, kind);
   return fmt::format("{} with {:.0f} % scale, {}", size, 100 * scale, kind);
-}
-
-/// What makes two rows of one setting comparable: the same pair of clouds.
-using PairKey = std::pair<std::string, int>;
-PairKey pairOf(const Row& row) { return {row.dataset, row.seed}; }
-
-std::set<PairKey> pairsOf(const std::vector<Row>& rows, const RowTest& test) {
-  std::set<PairKey> pairs;
-  for (const Row& row : rows) {
-    if (test(row)) pairs.insert(pairOf(row));
-  }
-  return pairs;
 }
 
 /// The default preset at one setting beside the method that does best against it, each on the
