@@ -12,6 +12,7 @@
 #include "agricolmap/4_associate/correlate/correlation_search.hpp"
 #include "agricolmap/4_associate/flow_association.hpp"
 #include "agricolmap/5_affine/estimate_affine.hpp"
+#include "agricolmap/6_refine/block_refine.hpp"
 #include "agricolmap/6_refine/cpd.hpp"
 #include "agricolmap/6_refine/dense_refine.hpp"
 #include "agricolmap/6_refine/vegetation.hpp"
@@ -40,6 +41,7 @@ struct RegistrationOptions {
   AffineOptions affine;
   HiddenGroundOptions hidden;
   DenseRefineOptions dense;
+  BlockRefineOptions blocks;
   VegetationOptions vegetation;
   CpdOptions cpd;
   VerticalOptions vertical;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "agricolmap/6_refine/basins.hpp"
+#include "agricolmap/6_refine/block_refine.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
@@ -21,8 +22,8 @@ constexpr std::array<int, 3> kFinerFactors = {3, 2, 1};
 /// The finest level whose result is compared with what lies beside it: neighbouring basins of finer
 /// ones are nearer than plants are.
 constexpr int kBasinFactor = 2;
-/// At which blocks are compared for the uncertainty.
-constexpr int kUncertaintyFactor = 2;
+/// At which blocks are moved alone, to lay the strip by them and for the uncertainty.
+constexpr int kBlockFactor = 2;
 /// Finer cells must have at least this share of the coarser ones' overlap.
 constexpr double kLeastFinerOverlap = 0.5;
 /// How far around the strip the fixed map's vegetation takes part [m]: its outlines decide what is
@@ -123,6 +124,10 @@ RefinedPose PoseRefinement::refineFinely(const RefinedPose& start) const {
     if (!finer || finer->overlap < kLeastFinerOverlap * best.overlap) break;
     best = *finer;
   }
+  // Too few blocks to compare say nothing about the pose.
+  const Level level = levelUnder(best.pose, kBlockFactor);
+  const auto laid = refineByBlocks(level.fixed, level.moving, best.pose, options_.blocks);
+  if (laid) best.pose = *laid;
   return best;
 }
 
@@ -237,7 +242,7 @@ Finding PoseRefinement::examine(const Eigen::Affine2d& pose, const RefineOutcome
   for (const RefinedPose& rival : outcome.rivals) finding.rivals.push_back(rival.significance);
   const double highest = finding.rivals.empty() ? 0.0 : finding.rivals.front();
   finding.evidence = meter_->measure(pose, space_, highest);
-  const Level level = levelUnder(pose, kUncertaintyFactor);
+  const Level level = levelUnder(pose, kBlockFactor);
   finding.uncertainty = estimateUncertainty(level.fixed, level.moving, pose, finding.evidence,
                                             space_, height_residual, options_.uncertainty);
   return finding;
