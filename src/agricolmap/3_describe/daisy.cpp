@@ -13,7 +13,10 @@
 namespace agricolmap {
 
 void describe(OptionTable& table, DaisyOptions& options) {
-  table.number("radius", options.radius, 3.0, 60.0, "cells", "radius of the outer ring");
+  table.number("radius", options.radius, 3.0, 60.0, "cells",
+               "radius of the outer ring at the finest level");
+  table.number("shrink", options.shrink, 0.5, 1.0, "",
+               "factor of the radius in cells from level to level");
   table.choice("norm", options.norm, {"partial", "full"},
                "unit length per sample point or over the whole descriptor");
 }

@@ -26,7 +26,10 @@ enum class DaisyNorm {
 };
 
 struct DaisyOptions {
-  double radius = 15.0;  ///< of the outer ring [cells of the level]
+  double radius = 15.0;  ///< of the outer ring at the finest level [cells]
+  /// Factor of that radius, in cells, from a level to the next coarser one. Were it 1, the coarse
+  /// descriptors would be as wide as the strip, and look at rows, which are alike everywhere.
+  double shrink = 0.7;
   DaisyNorm norm = DaisyNorm::kFull;
 };
 void describe(OptionTable& table, DaisyOptions& options);

@@ -159,6 +159,20 @@ TEST(Fpfh, CylinderDiffersFromPlaneAndNotFromItsTurnedSelf) {
   EXPECT_LE(difference(along_x.fpfh(middle), raised.fpfh(middle), kFpfhSize), 6);
 }
 
+TEST(Fpfh, ExaggerationTellsGentleReliefFromAPlane) {
+  const auto gentle = [](int row, int col) { return 0.01 * waves(row, col); };
+  const auto unlike = [&](double exaggeration) {
+    DescribeOptions options;
+    options.fpfh.exaggeration = exaggeration;
+    const DescriptorMap plane = describedFirst(mapOf(kFlat, kFlat), options);
+    const DescriptorMap relief = describedFirst(mapOf(kFlat, gentle), options);
+    const std::size_t middle = plane.index(40, 40);
+    return difference(plane.fpfh(middle), relief.fpfh(middle), kFpfhSize);
+  };
+  EXPECT_GT(unlike(8.0), 2 * unlike(1.0));
+  EXPECT_GT(unlike(8.0), 100);
+}
+
 TEST(Fpfh, EmptyCellsHaveNoPart) {
   const auto height = [](int row, int col) { return 0.02 * waves(row, col); };
   GridMap map = mapOf(kFlat, height);
@@ -204,6 +218,22 @@ TEST(DescribeMap, CropsHalvesAndFollowsTheDataTerm) {
   DescribeOptions bad;
   bad.daisy.radius = 1.0;
   EXPECT_THROW(describeMap(map, part, 1, bad), UsageError);
+}
+
+TEST(DescribeMap, CoarseDescriptorsSpanFewerCells) {
+  // How many sample points lie on the map shows how far a descriptor reaches.
+  const GridMap map = mapOf([](int row, int col) { return waves(row, col); }, kFlat);
+  const Box2 whole(map.frame.corner,
+                   map.frame.corner + map.frame.cell * Eigen::Vector2d(kSide, kSide));
+  const auto known = [&](double shrink) {
+    DescribeOptions options;
+    options.daisy.shrink = shrink;
+    const DescriptorMap coarse = describeMap(map, whole, 3, options)[2];
+    const std::size_t middle = coarse.index(coarse.frame.rows / 2, coarse.frame.cols / 2);
+    return std::popcount(coarse.known[middle] & DescriptorMap::kDaisyBits);
+  };
+  EXPECT_LT(known(1.0), kDaisyPoints);
+  EXPECT_EQ(known(0.5), kDaisyPoints);
 }
 
 TEST(DescribeMap, SameOnAnyNumberOfThreads) {

@@ -13,6 +13,8 @@ void describe(OptionTable& table, DescribeOptions& options) {
 
 namespace {
 
+constexpr double kLeastDaisyRadius = 3.0;  ///< a cell for each ring
+
 /// A rectangle of cells of a map.
 struct Part {
   int row = 0;
@@ -107,7 +109,10 @@ std::vector<DescriptorMap> describeMap(const GridMap& map, const Box2& window, i
       frame.rows = (frame.rows + 1) / 2;
       frame.cols = (frame.cols + 1) / 2;
     }
-    result.push_back(describeLevel(channels, frame, options));
+    DescribeOptions here = options;
+    here.daisy.radius =
+        std::max(kLeastDaisyRadius, options.daisy.radius * std::pow(options.daisy.shrink, level));
+    result.push_back(describeLevel(channels, frame, here));
   }
   return result;
 }

@@ -13,6 +13,8 @@ namespace agricolmap {
 
 void describe(OptionTable& table, FpfhOptions& options) {
   table.number("radius", options.radius, 1.5, 8.0, "cells", "radius of the neighbourhood");
+  table.number("exaggeration", options.exaggeration, 1.0, 20.0, "",
+               "factor of the heights; not in the paper");
 }
 
 namespace {
@@ -54,13 +56,13 @@ struct Surface {
   Raster<float> known;  ///< 1 or 0
 };
 
-Surface surfaceOf(const MaskedRaster& height, double cell) {
+Surface surfaceOf(const MaskedRaster& height, double cell, double exaggeration) {
   const MaskedRaster smooth = smoothed(height, kSurfaceSigma);
   const int rows = height.value.rows();
   const int cols = height.value.cols();
   Surface s{smooth.value, Raster<float>(rows, cols), Raster<float>(rows, cols),
             Raster<float>(rows, cols, 1.0F), Raster<float>(rows, cols)};
-  const auto to_cells = static_cast<float>(1.0 / cell);
+  const auto to_cells = static_cast<float>(exaggeration / cell);
   for (float& z : s.z) z *= to_cells;
   const auto known = [&](int row, int col) { return smooth.weight(row, col) >= kKnownShare; };
   parallelFor(
@@ -257,7 +259,7 @@ void computeFpfh(const MaskedRaster& height, double cell, const FpfhOptions& opt
   const int cols = height.value.cols();
   const auto neighbours = neighbourhood(options.radius);
   const auto weights = sumWeights(neighbours);
-  const Surface surface = surfaceOf(height, cell);
+  const Surface surface = surfaceOf(height, cell, options.exaggeration);
   const std::size_t cells = height.value.size();
   Spfh spfh{std::vector<std::uint8_t>(cells * kPadded), std::vector<std::uint8_t>(cells)};
   parallelFor((static_cast<std::size_t>(rows) + kRowGrain - 1) / kRowGrain, [&](std::size_t band) {

@@ -16,6 +16,9 @@ inline constexpr int kFpfhSize = 3 * kFpfhBins;
 
 struct FpfhOptions {
   double radius = 5.0;  ///< of the neighbourhood [cells of the level]
+  /// Of the heights. A grid map's slopes are so gentle that true angles nearly all fall into the
+  /// middle bins, where plants look like ground; it spreads them over the bins.
+  double exaggeration = 8.0;
 };
 void describe(OptionTable& table, FpfhOptions& options);
 

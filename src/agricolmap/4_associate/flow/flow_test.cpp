@@ -162,7 +162,8 @@ TEST(MatchCost, ComparesKnownPointsOnly) {
   DescriptorMap moving = fixed;
   for (int k = 0; k < kDaisySize; ++k) fixed.bytes[static_cast<std::size_t>(k)] = 33;
   const CostOptions options;
-  EXPECT_NEAR(MatchCost(fixed, moving, options)(0, 0), 1.0F, 1e-5F);
+  // A single pair of cells has no spread: the cost is in bytes.
+  EXPECT_NEAR(MatchCost(fixed, moving, options)(0, 0), 33.0F, 1e-3F);
   // Half of the points say the same, the others are unknown.
   for (std::size_t k = 0; k < kDaisySize / 2; ++k) moving.bytes[k] = 33;
   moving.known = {0x00FFU | DescriptorMap::kFpfhBit};
@@ -171,6 +172,49 @@ TEST(MatchCost, ComparesKnownPointsOnly) {
   EXPECT_GT(MatchCost(fixed, moving, options)(0, 0), 0.0F);
   moving.known = {0x0003U};
   EXPECT_EQ(MatchCost(fixed, moving, options)(0, 0), MatchCost::kImpossible);
+}
+
+/// A map of random descriptors, with bytes below the limits.
+DescriptorMap randomMap(std::uint64_t seed, int daisy, int fpfh) {
+  DescriptorMap map;
+  map.frame = {Eigen::Vector2d::Zero(), 0.02, 20, 20};
+  map.known.assign(400, DescriptorMap::kDaisyBits | DescriptorMap::kFpfhBit);
+  map.bytes.assign(400 * DescriptorMap::kStride, 0);
+  Random random(seed);
+  for (std::size_t cell = 0; cell < map.known.size(); ++cell) {
+    // Contrast differs from cell to cell, so that differences do.
+    const double strength = random.uniform();
+    for (int k = 0; k < kDaisySize + kFpfhSize; ++k) {
+      const int limit = k < kDaisySize ? daisy : fpfh;
+      map.bytes[cell * DescriptorMap::kStride + static_cast<std::size_t>(k)] =
+          static_cast<std::uint8_t>(std::lround(strength * random.uniform() * limit));
+    }
+  }
+  return map;
+}
+
+TEST(MatchCost, WeighsEachDescriptorByItsOwnSpread) {
+  const auto costs = [](int daisy, int fpfh, const CostOptions& options) {
+    const DescriptorMap fixed = randomMap(1, daisy, fpfh);
+    const DescriptorMap moving = randomMap(2, daisy, fpfh);
+    const MatchCost cost(fixed, moving, options);
+    std::vector<double> result;
+    for (std::size_t k = 0; k < 400; ++k) result.push_back(cost(k, 399 - k));
+    return result;
+  };
+  const auto deviation = [](const std::vector<double>& values) {
+    double mean = 0.0;
+    double squares = 0.0;
+    for (const double v : values) mean += v / static_cast<double>(values.size());
+    for (const double v : values) squares += (v - mean) * (v - mean);
+    return std::sqrt(squares / static_cast<double>(values.size()));
+  };
+  EXPECT_NEAR(deviation(costs(200, 60, {.alpha = 1.0, .beta = 0.0})), 1.0, 0.1);
+  EXPECT_NEAR(deviation(costs(200, 60, {.alpha = 0.0, .beta = 0.5})), 0.5, 0.05);
+  // However strong the one descriptor's contrast, it weighs as much beside the other.
+  const std::vector<double> weak = costs(200, 60, {});
+  const std::vector<double> strong = costs(200, 240, {});
+  for (std::size_t k = 0; k < weak.size(); ++k) EXPECT_NEAR(weak[k], strong[k], 0.1);
 }
 
 TEST(Warp, MovesWhatTheMapShows) {

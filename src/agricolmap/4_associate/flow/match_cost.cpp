@@ -1,11 +1,15 @@
 #include "agricolmap/4_associate/flow/match_cost.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #ifdef __AVX2__
 #include <immintrin.h>
 #endif
+
+#include "agricolmap/core/random.hpp"
 
 namespace agricolmap {
 
@@ -17,10 +21,10 @@ void describe(OptionTable& table, CostOptions& options) {
 namespace {
 
 constexpr int kLeastPoints = 5;  ///< of DAISY's 16
-/// Mean absolute difference per byte of unrelated cells of 2 cm, measured on simulated beet and
-/// soybean. Coarser cells differ less, in heights above all, which takes weight from FPFH there.
-constexpr double kUnrelatedDaisy = 33.0;
-constexpr double kUnrelatedFpfh = 13.0;
+constexpr int kSpreadPairs = 2000;
+constexpr std::uint64_t kSpreadSeed = 1;
+/// Where differences vary by less than a byte, they are mostly what rounding makes them.
+constexpr double kLeastSpread = 1.0;
 
 /// Bytes 0xFF where the sample point counts: eight bytes per bit, four points per row of the table.
 struct MaskTable {
@@ -92,28 +96,70 @@ int fpfhDifference(const std::uint8_t* a, const std::uint8_t* b) {
 
 #endif
 
+/// Running mean and variance (Welford).
+class Moments {
+ public:
+  void add(double value) {
+    ++count_;
+    const double from_mean = value - mean_;
+    mean_ += from_mean / count_;
+    squares_ += from_mean * (value - mean_);
+  }
+  double deviation() const { return count_ > 0 ? std::sqrt(squares_ / count_) : 0.0; }
+
+ private:
+  int count_ = 0;
+  double mean_ = 0.0;
+  double squares_ = 0.0;
+};
+
 }  // namespace
 
-MatchCost::MatchCost(const DescriptorMap& fixed, const DescriptorMap& moving,
-                     const CostOptions& options)
-    : fixed_(&fixed), moving_(&moving) {
-  for (int n = 1; n <= kDaisyPoints; ++n) {
-    daisy_scale_[static_cast<std::size_t>(n)] =
-        static_cast<float>(options.alpha / (kUnrelatedDaisy * kDaisyOrientations * n));
-  }
-  fpfh_scale_ = static_cast<float>(options.beta / (kUnrelatedFpfh * kFpfhSize));
-}
-
-bool MatchCost::usable(std::size_t moving_cell) const {
-  const std::uint32_t known = moving_->known[moving_cell];
+bool usable(const DescriptorMap& moving, std::size_t cell) {
+  const std::uint32_t known = moving.known[cell];
   const int points = std::popcount(known & DescriptorMap::kDaisyBits);
   // Without any visual channel (term `height`) no DAISY bit is ever set.
   return points == 0 ? (known & DescriptorMap::kFpfhBit) != 0
                      : (known & 1U) != 0 && points >= kLeastPoints;
 }
 
+UnrelatedSpread unrelatedSpread(const DescriptorMap& fixed, const DescriptorMap& moving) {
+  Moments daisy;
+  Moments fpfh;
+  if (fixed.known.empty() || moving.known.empty()) return {};
+  Random random(kSpreadSeed);
+  for (int k = 0; k < kSpreadPairs; ++k) {
+    const std::size_t a = random.below(fixed.known.size());
+    const std::size_t b = random.below(moving.known.size());
+    if (!fixed.describes(a) || !usable(moving, b)) continue;
+    const std::uint32_t points = moving.known[b] & DescriptorMap::kDaisyBits;
+    if (points != 0) {
+      const int difference = daisyDifference(fixed.daisy(a), moving.daisy(b), points, 0) +
+                             daisyDifference(fixed.daisy(a), moving.daisy(b), points, 1);
+      daisy.add(static_cast<double>(difference) / (kDaisyOrientations * std::popcount(points)));
+    }
+    if ((fixed.known[a] & moving.known[b] & DescriptorMap::kFpfhBit) != 0) {
+      fpfh.add(static_cast<double>(fpfhDifference(fixed.fpfh(a), moving.fpfh(b))) / kFpfhSize);
+    }
+  }
+  return {daisy.deviation(), fpfh.deviation()};
+}
+
+MatchCost::MatchCost(const DescriptorMap& fixed, const DescriptorMap& moving,
+                     const CostOptions& options)
+    : fixed_(&fixed), moving_(&moving) {
+  const UnrelatedSpread spread = unrelatedSpread(fixed, moving);
+  const double daisy = options.alpha / std::max(kLeastSpread, spread.daisy);
+  for (int n = 1; n <= kDaisyPoints; ++n) {
+    daisy_scale_[static_cast<std::size_t>(n)] =
+        static_cast<float>(daisy / (kDaisyOrientations * n));
+  }
+  fpfh_scale_ =
+      static_cast<float>(options.beta / (std::max(kLeastSpread, spread.fpfh) * kFpfhSize));
+}
+
 float MatchCost::below(std::size_t fixed_cell, std::size_t moving_cell, float limit) const {
-  if (!usable(moving_cell)) return kImpossible;
+  if (!usable(*moving_, moving_cell)) return kImpossible;
   const std::uint32_t known = moving_->known[moving_cell];
   const std::uint32_t points = known & DescriptorMap::kDaisyBits;
   const float scale = daisy_scale_[static_cast<std::size_t>(std::popcount(points))];

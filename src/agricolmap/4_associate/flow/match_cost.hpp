@@ -15,18 +15,29 @@ struct CostOptions {
 };
 void describe(OptionTable& table, CostOptions& options);
 
-/// α·C_DAISY + β·C_FPFH between a cell of the fixed and one of the moving map. Each C is a sum of
-/// absolute differences divided by that of unrelated cells (about; kUnrelated… per component), so
-/// that 1 means "nothing in common" in both and the weights compare like with like. Only sample
-/// points known in the moving map count: its strip is narrower than the descriptor.
+/// How much the differences of cells that have nothing to do with each other vary [bytes].
+struct UnrelatedSpread {
+  double daisy = 0.0;
+  double fpfh = 0.0;
+};
+
+/// Standard deviations over pairs of random cells of two maps; the same for the same maps.
+UnrelatedSpread unrelatedSpread(const DescriptorMap& fixed, const DescriptorMap& moving);
+
+/// True when a cell of the moving map has enough known surroundings to be matched.
+bool usable(const DescriptorMap& moving, std::size_t cell);
+
+/// α·C_DAISY + β·C_FPFH between a cell of the fixed and one of the moving map. Each C is a mean
+/// absolute difference per byte over its spread between unrelated cells of these two maps: what
+/// tells cells apart is how costs differ, not how large they are, so this is the unit in which the
+/// weights compare like with like, for any crop and at any resolution. Only sample points known in
+/// the moving map count: its strip is narrower than the descriptor.
 class MatchCost {
  public:
   static constexpr float kImpossible = 1e9F;
 
   MatchCost(const DescriptorMap& fixed, const DescriptorMap& moving, const CostOptions& options);
 
-  /// True when the moving cell has enough known surroundings to be matched.
-  bool usable(std::size_t moving_cell) const;
   /// kImpossible when the moving cell is not usable.
   float operator()(std::size_t fixed_cell, std::size_t moving_cell) const {
     return below(fixed_cell, moving_cell, std::numeric_limits<float>::infinity());

@@ -332,14 +332,13 @@ SeedLattice latticeOn(const DescriptorMap& moving, int seed_spacing) {
   SeedLattice seeds;
   seeds.rows = (moving.frame.rows + seed_spacing / 2) / seed_spacing;
   seeds.cols = (moving.frame.cols + seed_spacing / 2) / seed_spacing;
-  const MatchCost cost(moving, moving, {});
   for (int r = 0; r < seeds.rows; ++r) {
     for (int c = 0; c < seeds.cols; ++c) {
       const int row = r * seed_spacing + seed_spacing / 2;
       const int col = c * seed_spacing + seed_spacing / 2;
       const bool inside = row < moving.frame.rows && col < moving.frame.cols;
       seeds.position.push_back(moving.frame.centre(row, col));
-      seeds.active.push_back(inside && cost.usable(moving.index(row, col)) ? 1 : 0);
+      seeds.active.push_back(inside && usable(moving, moving.index(row, col)) ? 1 : 0);
     }
   }
   return seeds;

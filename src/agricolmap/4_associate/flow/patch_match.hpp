@@ -12,11 +12,11 @@ namespace agricolmap {
 
 struct FlowOptions {
   int seed_spacing = 3;      ///< between seeds [cells of the finest level], d in CPM
-  int levels = 4;            ///< resolutions, each half the one before
+  int levels = 3;            ///< resolutions, each half the one before
   int iterations = 8;        ///< of propagation and random search per level, n in CPM
   int random_start = 16;     ///< random displacements per seed at the coarsest level
   double refine_radius = 4;  ///< of the random search below the coarsest level [cells], r in CPM
-  double closure = 3.0;      ///< largest forward–backward difference [cells]; 0 = no check
+  double closure = 5.0;      ///< largest forward–backward difference [cells]; 0 = no check
 };
 void describe(OptionTable& table, FlowOptions& options);
 
