@@ -78,13 +78,22 @@ nlohmann::ordered_json matrixJson(const Eigen::Affine3d& transform) {
 
 /// Matches whose fixed point lies horizontally within `tolerance` [m] of where the truth puts the
 /// moving one.
-std::size_t rightMatches(const MethodOutcome& outcome, const Eigen::Affine3d& truth,
-                         double tolerance) {
+std::size_t rightMatches(const MatchSet& matches, const Eigen::Affine3d& truth, double tolerance) {
   std::size_t right = 0;
-  for (const MatchedPair& pair : outcome.matches) {
+  for (const MatchedPair& pair : matches.pairs) {
     if ((truth * pair.moving - pair.fixed).head<2>().norm() <= tolerance) ++right;
   }
   return right;
+}
+
+nlohmann::ordered_json matchesJson(const MatchSet& matches, const MethodInput& input,
+                                   double tolerance) {
+  nlohmann::ordered_json json = {{"count", matches.pairs.size()}, {"inliers", matches.inliers}};
+  if (input.truth) {
+    json["tolerance_m"] = tolerance;
+    json["right"] = rightMatches(matches, *input.truth, tolerance);
+  }
+  return json;
 }
 
 /// Most memory that this program has held so far [MiB]. Not getrusage's figure: that starts from
@@ -119,15 +128,9 @@ nlohmann::ordered_json resultJson(const Arguments& arguments, const MethodInput&
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const auto& [stage, seconds] : outcome.times.stages()) stages[stage] = seconds;
   json["stages_s"] = stages;
-  if (outcome.has_matches) {
-    nlohmann::ordered_json matches = {{"count", outcome.matches.size()},
-                                      {"inliers", outcome.inliers}};
-    if (input.truth) {
-      matches["tolerance_m"] = arguments.inlier_tolerance;
-      matches["right"] = rightMatches(outcome, *input.truth, arguments.inlier_tolerance);
-    }
-    json["matches"] = matches;
-  }
+  const double tolerance = arguments.inlier_tolerance;
+  if (outcome.matches) json["matches"] = matchesJson(*outcome.matches, input, tolerance);
+  if (outcome.rematches) json["rematches"] = matchesJson(*outcome.rematches, input, tolerance);
   return json;
 }
 

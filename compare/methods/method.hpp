@@ -35,15 +35,21 @@ struct MatchedPair {
   Eigen::Vector3d fixed;
 };
 
+/// Matches, and how many of them the method took for coherent.
+struct MatchSet {
+  std::vector<MatchedPair> pairs;  ///< before anything coherent was chosen from them
+  std::size_t inliers = 0;
+};
+
 /// What a method found. No transform: it has no answer, and `why` says why.
 struct MethodOutcome {
   std::optional<Eigen::Affine3d> fixed_from_moving;  ///< moving file → fixed file [m]
-  bool accepted = false;             ///< whether the method itself stands by its transform
-  std::string why;                   ///< in plain words when it does not
-  StageTimes times;                  ///< seconds per stage
-  bool has_matches = false;          ///< whether the method matches points at all
-  std::vector<MatchedPair> matches;  ///< before anything coherent was chosen from them
-  std::size_t inliers = 0;           ///< of the matches, what the method took for coherent
+  bool accepted = false;            ///< whether the method itself stands by its transform
+  std::string why;                  ///< in plain words when it does not
+  StageTimes times;                 ///< seconds per stage
+  std::optional<MatchSet> matches;  ///< of methods that match points
+  /// Of those that match again from what the first matching gave: what the result is fitted to.
+  std::optional<MatchSet> rematches;
 };
 
 class Method {

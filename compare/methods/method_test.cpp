@@ -86,13 +86,17 @@ TEST(Product, PaperChainFindsTheStripAndSaysItsMatches) {
   const MethodOutcome outcome = makeMethod("agricolmap")->run(testing::inputOf(pair, error, prior));
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
   EXPECT_TRUE(testing::errorsOf(outcome, pair).within({}));
-  ASSERT_TRUE(outcome.has_matches);
-  ASSERT_GT(outcome.matches.size(), 100U);
-  const auto right =
-      std::count_if(outcome.matches.begin(), outcome.matches.end(), [&](const MatchedPair& match) {
-        return (pair.best_affine * match.moving - match.fixed).head<2>().norm() < 0.1;
-      });
-  EXPECT_GT(static_cast<double>(right), 0.4 * static_cast<double>(outcome.matches.size()));
+  ASSERT_TRUE(outcome.matches.has_value());
+  ASSERT_TRUE(outcome.rematches.has_value());
+  for (const MatchSet& set : {*outcome.matches, *outcome.rematches}) {
+    ASSERT_GT(set.pairs.size(), 100U);
+    EXPECT_LE(set.inliers, set.pairs.size());
+    const auto right =
+        std::count_if(set.pairs.begin(), set.pairs.end(), [&](const MatchedPair& match) {
+          return (pair.best_affine * match.moving - match.fixed).head<2>().norm() < 0.1;
+        });
+    EXPECT_GT(static_cast<double>(right), 0.4 * static_cast<double>(set.pairs.size()));
+  }
 }
 
 }  // namespace

@@ -90,21 +90,20 @@ void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen
       maps.frames.levelled_from_moving * Eigen::Translation3d(-input.moving.origin);
 }
 
-void setMatches(const PairFrames& frames, const MethodInput& input,
-                const std::vector<Match>& matches, std::size_t inliers, MethodOutcome& outcome) {
+MatchSet matchSet(const PairFrames& frames, const MethodInput& input,
+                  const std::vector<Match>& matches, std::size_t inliers) {
   const Eigen::Affine3d fixed_file =
       Eigen::Translation3d(input.fixed.origin) * frames.levelled_from_fixed.inverse();
   const Eigen::Affine3d moving_file =
       Eigen::Translation3d(input.moving.origin) * frames.levelled_from_moving.inverse();
   const auto lifted = [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p.x(), p.y(), 0.0); };
-  outcome.has_matches = true;
-  outcome.inliers = inliers;
-  outcome.matches.clear();
-  outcome.matches.reserve(matches.size());
+  MatchSet set;
+  set.inliers = inliers;
+  set.pairs.reserve(matches.size());
   for (const Match& match : matches) {
-    outcome.matches.push_back(
-        {moving_file * lifted(match.moving), fixed_file * lifted(match.fixed)});
+    set.pairs.push_back({moving_file * lifted(match.moving), fixed_file * lifted(match.fixed)});
   }
+  return set;
 }
 
 }  // namespace agricolmap::compare

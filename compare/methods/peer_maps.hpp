@@ -45,8 +45,8 @@ void setPlanePose(const PeerMaps& maps, const MethodInput& input, const Eigen::A
 void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine3d& pose,
                      MethodOutcome& outcome);
 
-/// Fills the outcome's matches from matches in the levelled frames.
-void setMatches(const PairFrames& frames, const MethodInput& input,
-                const std::vector<Match>& matches, std::size_t inliers, MethodOutcome& outcome);
+/// Matches in the levelled frames, in file coordinates.
+MatchSet matchSet(const PairFrames& frames, const MethodInput& input,
+                  const std::vector<Match>& matches, std::size_t inliers);
 
 }  // namespace agricolmap::compare

@@ -48,7 +48,7 @@ class Product : public Method {
     const Registration result =
         registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
     fillFrom(result, input, outcome);
-    outcome.has_matches = options.association == AssociationKind::kFlow;
+    if (options.association != AssociationKind::kFlow) outcome.matches.reset();
   }
 
  private:
@@ -61,12 +61,18 @@ void fillFrom(const Registration& result, const MethodInput& input, MethodOutcom
   outcome.accepted = result.verdict.status == Status::kAccepted;
   if (!outcome.accepted) outcome.why = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
   if (result.has_transform) outcome.fixed_from_moving = result.fixed_from_moving;
-  double inliers = 0.0;
-  for (const auto& [name, value] : result.association.counts) {
-    if (name == "inliers") inliers = value;
+  const AssociationResult& found = result.association;
+  const auto count = [&](std::string_view wanted) {
+    for (const auto& [name, value] : found.counts) {
+      if (name == wanted) return static_cast<std::size_t>(value);
+    }
+    return std::size_t{0};
+  };
+  outcome.matches = matchSet(result.frames, input, found.all_matches, count("inliers"));
+  if (!found.all_rematches.empty()) {
+    outcome.rematches =
+        matchSet(result.frames, input, found.all_rematches, count("rematch_inliers"));
   }
-  setMatches(result.frames, input, result.association.all_matches,
-             static_cast<std::size_t>(inliers), outcome);
 }
 
 std::vector<std::string> productNames() {

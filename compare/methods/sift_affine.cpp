@@ -73,7 +73,7 @@ class SiftAffine : public Method {
     });
     const std::optional<RobustFit> fit = outcome.times.run(
         "affine", [&] { return fitRobustly(matches, maps.moving.frame.cell, options_); });
-    setMatches(maps.frames, input, matches, fit ? fit->inliers : 0, outcome);
+    outcome.matches = matchSet(maps.frames, input, matches, fit ? fit->inliers : 0);
     if (!fit || !(fit->pose.linear().determinant() > 0.0)) {
       outcome.why = fmt::format("{} matches determine no affine", matches.size());
       return;

@@ -99,12 +99,18 @@ std::string accuracyCsv(const std::vector<Row>& rows) {
 std::string inliersCsv(const std::vector<Row>& rows) {
   std::string text =
       "kind,dataset,method,pairs,matches_mean,right_percent,right_deviation,coherent_percent,"
-      "coherent_deviation,paper_real_data_percent\n";
+      "coherent_deviation,rematches_mean,rematches_right_percent,rematches_right_deviation,"
+      "rematches_coherent_percent,rematches_coherent_deviation,paper_real_data_percent\n";
+  const auto shares = [](const MatchShares& of) {
+    if (of.runs == 0) return std::string(",,,,");
+    return fmt::format("{:.0f},{:.2f},{},{:.2f},{}", of.matches, of.right,
+                       number(of.right_deviation, 2), of.coherent,
+                       number(of.coherent_deviation, 2));
+  };
   for (const InlierLine& line : inlierLines(rows)) {
-    text += fmt::format(
-        "{},{},{},{},{:.0f},{:.2f},{},{:.2f},{},{}\n", line.kind, line.dataset, line.method,
-        line.runs, line.matches, line.right, number(line.right_deviation, 2), line.coherent,
-        number(line.coherent_deviation, 2), paperInliers(line.dataset, line.method));
+    text +=
+        fmt::format("{},{},{},{},{},{},{}\n", line.kind, line.dataset, line.method, line.first.runs,
+                    shares(line.first), shares(line.last), paperInliers(line.dataset, line.method));
   }
   return text;
 }

@@ -203,27 +203,37 @@ std::vector<TimeLine> timeLines(const std::vector<Row>& rows) {
   return lines;
 }
 
+namespace {
+
+MatchShares sharesOf(const std::vector<MatchCounts>& runs) {
+  std::vector<double> matches, right, coherent;
+  for (const MatchCounts& counts : runs) {
+    if (!(counts.matches > 0.0)) continue;
+    matches.push_back(counts.matches);
+    right.push_back(100.0 * counts.right / counts.matches);
+    coherent.push_back(100.0 * counts.coherent / counts.matches);
+  }
+  return {matches.size(),   mean(matches),  mean(right),
+          deviation(right), mean(coherent), deviation(coherent)};
+}
+
+}  // namespace
+
 std::vector<InlierLine> inlierLines(const std::vector<Row>& rows) {
   std::vector<InlierLine> lines;
   for (const std::string& dataset : dataSetsOf(rows)) {
     for (const std::string& method : methodsOf(rows)) {
-      InlierLine line{dataset, {}, method};
-      std::vector<double> matches, right, coherent;
+      InlierLine line{dataset, {}, method, {}, {}};
+      std::vector<MatchCounts> first, last;
       for (const Row& row : rows) {
         if (row.experiment != "inliers" || row.dataset != dataset || row.method != method) continue;
         line.kind = row.kind;
-        if (!(row.matches > 0.0)) continue;
-        matches.push_back(row.matches);
-        right.push_back(100.0 * row.right / row.matches);
-        coherent.push_back(100.0 * row.coherent / row.matches);
+        first.push_back(row.first);
+        last.push_back(row.last);
       }
-      line.runs = matches.size();
-      line.matches = mean(matches);
-      line.right = mean(right);
-      line.right_deviation = deviation(right);
-      line.coherent = mean(coherent);
-      line.coherent_deviation = deviation(coherent);
-      if (line.runs > 0) lines.push_back(std::move(line));
+      line.first = sharesOf(first);
+      line.last = sharesOf(last);
+      if (line.first.runs > 0) lines.push_back(std::move(line));
     }
   }
   return lines;

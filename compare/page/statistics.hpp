@@ -73,15 +73,21 @@ struct TimeLine {
 };
 std::vector<TimeLine> timeLines(const std::vector<Row>& rows);
 
-/// Matches of one method on one data set, in percent of all: mean and deviation over its runs.
-struct InlierLine {
-  std::string dataset;
-  std::string kind;
-  std::string method;
+/// Matches in percent of all: mean and deviation over runs.
+struct MatchShares {
   std::size_t runs = 0;
   double matches = 0.0;                             ///< mean number
   double right = 0.0, right_deviation = 0.0;        ///< near the truth
   double coherent = 0.0, coherent_deviation = 0.0;  ///< kept by the method
+};
+
+/// Matches of one method on one data set.
+struct InlierLine {
+  std::string dataset;
+  std::string kind;
+  std::string method;
+  MatchShares first;
+  MatchShares last;  ///< no runs: it does not match again
 };
 std::vector<InlierLine> inlierLines(const std::vector<Row>& rows);
 

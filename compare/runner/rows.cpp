@@ -14,8 +14,8 @@ constexpr std::string_view kProgram = "agricolmap_compare";
 constexpr std::string_view kHeader =
     "dataset,kind,experiment,scale_error,setting,seed,method,status,accepted,correct,rms_m,"
     "rms_horizontal_m,rms_to_best_affine_m,e_t_m,e_r_rad,e_s,wall_s,run_s,cpu_s,peak_mib,idle_mib,"
-    "matches,right,coherent,stages,note";
-constexpr std::size_t kColumns = 26;
+    "matches,right,coherent,rematches,rematches_right,rematches_coherent,stages,note";
+constexpr std::size_t kColumns = 29;
 
 constexpr double RegistrationErrors::*kErrors[] = {&RegistrationErrors::rms,
                                                    &RegistrationErrors::rms_horizontal,
@@ -23,8 +23,11 @@ constexpr double RegistrationErrors::*kErrors[] = {&RegistrationErrors::rms,
                                                    &RegistrationErrors::translation,
                                                    &RegistrationErrors::rotation,
                                                    &RegistrationErrors::scale};
-constexpr double Row::*kNumbers[] = {&Row::wall_s,   &Row::run_s,   &Row::cpu_s, &Row::peak_mib,
-                                     &Row::idle_mib, &Row::matches, &Row::right, &Row::coherent};
+constexpr double Row::*kNumbers[] = {&Row::wall_s, &Row::run_s, &Row::cpu_s, &Row::peak_mib,
+                                     &Row::idle_mib};
+constexpr MatchCounts Row::*kMatchings[] = {&Row::first, &Row::last};
+constexpr double MatchCounts::*kCounts[] = {&MatchCounts::matches, &MatchCounts::right,
+                                            &MatchCounts::coherent};
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.7g}", value) : std::string();
@@ -45,6 +48,9 @@ std::string toLine(const Row& row) {
                                  row.status, row.accepted, row.correct);
   for (const auto field : kErrors) line += fmt::format(",{}", number(row.errors.*field));
   for (const auto field : kNumbers) line += fmt::format(",{}", number(row.*field));
+  for (const auto matching : kMatchings) {
+    for (const auto field : kCounts) line += fmt::format(",{}", number(row.*matching.*field));
+  }
   return line + fmt::format(",{},{}\n", plain(row.stages), plain(row.note));
 }
 
@@ -87,6 +93,9 @@ Row parseLine(std::string_view line, const std::string& place) {
   row.correct = value() == 1.0;
   for (const auto field : kErrors) row.errors.*field = value();
   for (const auto field : kNumbers) row.*field = value();
+  for (const auto matching : kMatchings) {
+    for (const auto field : kCounts) row.*matching.*field = value();
+  }
   row.stages = text();
   row.note = text();
   return row;

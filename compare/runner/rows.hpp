@@ -16,6 +16,13 @@
 
 namespace agricolmap::compare {
 
+/// Matches of a data association; none: not a number.
+struct MatchCounts {
+  double matches = std::numeric_limits<double>::quiet_NaN();
+  double right = std::numeric_limits<double>::quiet_NaN();     ///< of them, near the truth
+  double coherent = std::numeric_limits<double>::quiet_NaN();  ///< of them, kept by the method
+};
+
 /// What one run of one method came to. Numbers that do not exist are NaN, and empty in the file.
 struct Row {
   std::string dataset;
@@ -36,9 +43,8 @@ struct Row {
   double cpu_s = std::numeric_limits<double>::quiet_NaN();
   double peak_mib = std::numeric_limits<double>::quiet_NaN();
   double idle_mib = std::numeric_limits<double>::quiet_NaN();  ///< before anything was read
-  double matches = std::numeric_limits<double>::quiet_NaN();
-  double right = std::numeric_limits<double>::quiet_NaN();     ///< of them, near the truth
-  double coherent = std::numeric_limits<double>::quiet_NaN();  ///< of them, kept by the method
+  MatchCounts first;                                           ///< of a method that matches points
+  MatchCounts last;    ///< of one that matches again from what the first matching gave
   std::string stages;  ///< `name=seconds` parted by semicolons
   std::string note;    ///< why there is no transform
 

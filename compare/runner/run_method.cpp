@@ -56,10 +56,11 @@ void fillFromJson(const nlohmann::json& json, const PairFiles::Moving& moving, R
     row.stages +=
         fmt::format("{}{}={:.4f}", row.stages.empty() ? "" : ";", stage, seconds.get<double>());
   }
-  if (json.contains("matches")) {
-    row.matches = json["matches"].at("count").get<double>();
-    row.coherent = json["matches"].at("inliers").get<double>();
-    row.right = json["matches"].at("right").get<double>();
+  for (const auto& [name, counts] : {std::pair{"matches", &row.first}, {"rematches", &row.last}}) {
+    if (!json.contains(name)) continue;
+    counts->matches = json[name].at("count").get<double>();
+    counts->coherent = json[name].at("inliers").get<double>();
+    counts->right = json[name].at("right").get<double>();
   }
   if (json.at("fixed_from_moving").is_null()) return;
   row.errors =

@@ -119,7 +119,7 @@ TEST_F(RunnerTest, RowsComeBackAndOtherVersionsAreRefused) {
     EXPECT_EQ(found->errors.rms, 0.125);
     EXPECT_EQ(found->run_s, 1.5);
     EXPECT_EQ(found->note, "no plants; at all here");
-    EXPECT_TRUE(std::isnan(found->matches));
+    EXPECT_TRUE(std::isnan(found->first.matches));
   }
   EXPECT_THROW(RowTable(path, "version 2"), InputError);
 }

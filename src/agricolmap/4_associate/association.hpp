@@ -61,6 +61,8 @@ struct Placement {
 struct AssociationResult {
   std::vector<Placement> placements;  ///< best first; empty when nothing coherent was found
   std::vector<Match> all_matches;     ///< before the vote, for pictures; may be empty
+  /// Before the vote, of a second matching from what the first found; empty when there was none.
+  std::vector<Match> all_rematches;
   /// Counts for the report, e.g. {"seeds", 6012}, {"matches", 3450}, {"inliers", 3001}.
   std::vector<std::pair<std::string, double>> counts;
 };

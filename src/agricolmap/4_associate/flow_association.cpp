@@ -255,6 +255,7 @@ AssociationResult FlowAssociation::associate(const GridMap& fixed, const GridMap
     const double again = found.empty() ? 0.0 : static_cast<double>(found.front().all.size());
     const double kept =
         found.empty() ? 0.0 : static_cast<double>(found.front().placement.matches.size());
+    if (!found.empty()) result.all_rematches = found.front().all;
     result.counts.insert(
         result.counts.end(),
         {{"rematches", again}, {"rematch_inliers", kept}, {"rematch_share", shareOf(kept, again)}});
