@@ -26,6 +26,10 @@ namespace {
 constexpr std::size_t kMinCells = 50;
 /// At least this share of the cells stands for the ground, however tall they are.
 constexpr double kMinGroundShare = 0.05;
+/// Lowest cells that fit one another to this [m] are right to centimetres, however few see the
+/// ground: drilled wheat, where levelling may take the foot of the canopy for the ground. Under a
+/// canopy that closes they differ by decimetres.
+constexpr double kUnsureResidual = 0.05;
 
 /// A robot that looks from the side takes canopy for ground more often than a drone does, and then
 /// the fixed map seems too low: differences on the other side fade later, by this factor.
@@ -248,7 +252,8 @@ VerticalResult fitVertical(const GridMap& fixed, const GridMap& moving,
   // Where a canopy hides the ground from the cells, the planes that levelling found from the points
   // may tell more.
   const double level = levelDeviation(fixed, moving, pairs);
-  if (result.ground_share < kMinGroundShare && level < result.residual) {
+  if (result.ground_share < kMinGroundShare && result.residual > kUnsureResidual &&
+      level < result.residual) {
     result.offset = 0.0;
     result.slope.setZero();
     result.residual = level;

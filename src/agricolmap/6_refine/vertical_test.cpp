@@ -109,6 +109,26 @@ TEST(Vertical, UnderAClosedCanopyTheLevelledPlanesCount) {
   EXPECT_GE(known.residual, 0.02);
 }
 
+TEST(Vertical, FewGroundCellsThatFitCountBeforeLevelledPlanes) {
+  GridMap fixed = emptyMap(6.0, 2.2);
+  GridMap moving = fixed;
+  fixed.ground_deviation = moving.ground_deviation = 0.001;
+  Random random(17);
+  for (int r = 0; r < fixed.frame.rows; ++r) {
+    for (int c = 0; c < fixed.frame.cols; ++c) {
+      // Either sees the ground through one cell in eight, mostly not the same.
+      const auto canopy = [&] { return random.chance(0.125) ? 0.0 : random.uniform(0.04, 0.2); };
+      fixed.weight(r, c) = moving.weight(r, c) = 1.0F;
+      fixed.height(r, c) = static_cast<float>(canopy() + random.normal(0.005));
+      // Levelling took something 6 cm above the ground for it.
+      moving.height(r, c) = static_cast<float>(canopy() - 0.06 + random.normal(0.005));
+    }
+  }
+  const VerticalResult result = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
+  EXPECT_LT(result.ground_share, 0.05);
+  EXPECT_NEAR(result.offset, 0.06, 0.02);
+}
+
 TEST(Vertical, MapsThatDoNotOverlapHaveNoHeight) {
   const Eigen::Affine2d away(Eigen::Translation2d(100.0, 0.0));
   EXPECT_EQ(
