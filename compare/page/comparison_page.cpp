@@ -75,7 +75,9 @@ void addSuccess(const std::vector<Row>& rows, Document& document) {
       "exact. Scale errors stretch or shrink x and y by signs of their own. A star marks cells "
       "with runs that were not made, as the method had failed on all pairs at three smaller "
       "errors or is rigid and the scale error alone too much; they count as failures. A dagger "
-      "marks cells with runs that the time limit ended. "
+      "marks cells with runs that the time limit ended. Each method's share is over all of its own "
+      "pairs, whose number stands beside its name in the tables: who was run on more may have met "
+      "a harder one. The sentences above compare on the pairs of both. "
       "The paper's figures (dashed in the plots) are those of its fig. correct_reg_rate "
       "without scale error, on real data, as released with its code; it gives no others as "
       "numbers."});

@@ -51,6 +51,7 @@ std::vector<Row> someRows() {
     rows.push_back(makeRow("orb", "accuracy", 0.05, seed, true));
     rows.push_back(makeRow("orb", "inliers", 1.0, seed, true));
     rows.back().first = {200.0, 50.0, 100.0};
+    rows.back().last = {100.0, 60.0, 90.0};
   }
   return rows;
 }
@@ -108,8 +109,9 @@ TEST(ComparePage, TablesHaveThePapersFigures) {
   EXPECT_THAT(accuracyCsv(rows), HasSubstr("0.04 m / 0.04° / 2.2 %"));
   EXPECT_THAT(successCsv(rows, "translation"),
               HasSubstr("simulated,soybean,0,5,orb,4,0,0.0000,0.0000,0.4899,0,4,0,0,0.82–0.88"));
-  EXPECT_THAT(inliersCsv(rows),
-              HasSubstr("simulated,soybean,orb,4,200,25.00,0.00,50.00,0.00,,,,,,"));
+  EXPECT_THAT(
+      inliersCsv(rows),
+      HasSubstr("simulated,soybean,orb,4,200,25.00,0.00,50.00,0.00,100,60.00,0.00,90.00,0.00,"));
   EXPECT_THAT(timesCsv(rows), HasSubstr("search=0.750;grid=0.250,3.9 / 6.7 / 4.8"));
 }
 
