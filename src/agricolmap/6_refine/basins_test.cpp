@@ -48,7 +48,7 @@ TEST(Basins, NextPlantIsLeftForTheRightOne) {
   const Drilled field;
   const SignalMap fixed = field.map(80, 150, {-1.0, -1.0});
   const SignalMap moving = field.map(30, 100, {0.0, 0.0});
-  const Eigen::Affine2d start(Eigen::Translation2d(0.07, 0.0));
+  const Eigen::Affine2d start(Eigen::Translation2d(0.08, 0.0));
   DenseRefineOptions options;
   options.hop = 2.0;
   const DenseRefineResult caught = refineDense(fixed, moving, start, options);

@@ -27,7 +27,7 @@ struct Normal {
   double weight = 0.0;
 };
 
-/// One linearisation of fixed(place + shift) − gain·moving around `shift`.
+/// One linearisation of moving − gain·fixed(place + shift) around `shift`.
 Normal linearise(const SignalMap& fixed, const std::vector<Cell>& cells,
                  const Eigen::Vector2d& shift, const double gain[], double deviation) {
   const double cell = fixed.frame.cell;
@@ -43,14 +43,16 @@ Normal linearise(const SignalMap& fixed, const std::vector<Cell>& cells,
       continue;
     }
     for (int k = 0; k < kSignalChannels; ++k) {
-      const Eigen::Vector2d slope(static_cast<double>(east.value[k] - west.value[k]) / cell,
-                                  static_cast<double>(north.value[k] - south.value[k]) / cell);
+      const Eigen::Vector2d slope =
+          gain[k] / cell *
+          Eigen::Vector2d(static_cast<double>(east.value[k] - west.value[k]),
+                          static_cast<double>(north.value[k] - south.value[k]));
       const double residual =
-          static_cast<double>(here.value[k]) - gain[k] * static_cast<double>(c.value[k]);
+          static_cast<double>(c.value[k]) - gain[k] * static_cast<double>(here.value[k]);
       const double u = residual / (kRobust * deviation);
       const double w = 1.0 / (1.0 + u * u);
       normal.matrix += w * slope * slope.transpose();
-      normal.right -= w * residual * slope;
+      normal.right += w * residual * slope;
       normal.residual2 += w * residual * residual;
       normal.weight += w;
     }
@@ -58,21 +60,21 @@ Normal linearise(const SignalMap& fixed, const std::vector<Cell>& cells,
   return normal;
 }
 
-/// Gains of the moving signals that fit the fixed ones best under the pose.
+/// Gains of the fixed signals that fit the moving ones best under the pose.
 void fitGains(const SignalMap& fixed, const std::vector<std::vector<Cell>>& blocks, double gain[]) {
-  double fm[kSignalChannels] = {}, mm[kSignalChannels] = {};
+  double fm[kSignalChannels] = {}, ff[kSignalChannels] = {};
   for (const auto& cells : blocks) {
     for (const Cell& c : cells) {
       const SignalSample look = sampleSignal(fixed, c.place);
       if (look.weight <= 0.0F) continue;
       for (int k = 0; k < kSignalChannels; ++k) {
         fm[k] += static_cast<double>(look.value[k] * c.value[k]);
-        mm[k] += static_cast<double>(c.value[k] * c.value[k]);
+        ff[k] += static_cast<double>(look.value[k] * look.value[k]);
       }
     }
   }
   for (int k = 0; k < kSignalChannels; ++k) {
-    gain[k] = mm[k] > 0.0 ? std::max(0.1, fm[k] / mm[k]) : 0.0;
+    gain[k] = ff[k] > 0.0 ? std::max(0.1, fm[k] / ff[k]) : 0.0;
   }
 }
 

@@ -133,7 +133,7 @@ class FixedReader {
   float a_[6];
 };
 
-/// Per channel: gain of the moving values and robust deviation of the residual.
+/// Per channel: gain of the fixed values and robust deviation of the residual.
 struct Noise {
   double gain[kSignalChannels] = {1.0, 1.0};
   double deviation[kSignalChannels] = {1.0, 1.0};
@@ -183,7 +183,7 @@ void addSample(const Sample& s, const Look& look, const Noise& noise, double rob
     if (!used[k]) continue;
     const auto f = static_cast<double>(look.value[k]);
     const auto m = static_cast<double>(s.value[k]);
-    const double residual = f - noise.gain[k] * m;
+    const double residual = m - noise.gain[k] * f;
     const double u = residual / (robust * noise.deviation[k]);
     const double w = static_cast<double>(s.weight) / (1.0 + u * u);
     sums.fm[k] += w * f * m;
@@ -192,12 +192,13 @@ void addSample(const Sample& s, const Look& look, const Noise& noise, double rob
     sums.rr[k] += w * residual * residual;
     sums.weight[k] += w;
     const double scale = w / (noise.deviation[k] * noise.deviation[k]);
-    const auto gx = static_cast<double>(look.dx[k]), gy = static_cast<double>(look.dy[k]);
+    const double gx = noise.gain[k] * static_cast<double>(look.dx[k]);
+    const double gy = noise.gain[k] * static_cast<double>(look.dy[k]);
     curvature[0] += scale * gx * gx;
     curvature[1] += scale * gx * gy;
     curvature[2] += scale * gy * gy;
-    pull[0] -= scale * residual * gx;
-    pull[1] -= scale * residual * gy;
+    pull[0] += scale * residual * gx;
+    pull[1] += scale * residual * gy;
   }
   const auto x = static_cast<double>(s.x), y = static_cast<double>(s.y);
   const double products[6] = {x * x, x * y, x, y * y, y, 1.0};
@@ -227,9 +228,9 @@ Sums pass(const Samples& samples, const FixedReader& reader, const Noise& noise,
 
 void updateNoise(const Sums& sums, Noise& noise) {
   for (int k = 0; k < kSignalChannels; ++k) {
-    if (sums.weight[k] <= 0.0 || sums.mm[k] <= 0.0) continue;
-    // A gain that fell to zero would let the fit ignore the moving map.
-    noise.gain[k] = std::max(0.2, sums.fm[k] / sums.mm[k]);
+    if (sums.weight[k] <= 0.0 || sums.ff[k] <= 0.0) continue;
+    // A gain that fell to zero would take the channel out for good.
+    noise.gain[k] = std::max(0.2, sums.fm[k] / sums.ff[k]);
     noise.deviation[k] = std::max(0.05, std::sqrt(sums.rr[k] / sums.weight[k]));
   }
 }

@@ -36,8 +36,12 @@ struct DenseRefineResult {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// Minimises Σ_channels Σ_cells ρ((fixed(A·x) − gain · moving(x)) / σ) over a horizontal affine A,
+/// Minimises Σ_channels Σ_cells ρ((moving(x) − gain · fixed(A·x)) / σ) over a horizontal affine A,
 /// from `start`. Both maps at the same cell size, levelled frames.
+///
+/// The gain stands at the map that is read elsewhere when A changes: so the sum falls as the
+/// correlation rises. With the gain at the moving map, Σ fixed(A·x)² alone would draw the strip to
+/// where the fixed map is calm, the more the less the maps have in common (ExG of drilled wheat).
 DenseRefineResult refineDense(const SignalMap& fixed, const SignalMap& moving,
                               const Eigen::Affine2d& start, const DenseRefineOptions& options);
 

@@ -99,6 +99,24 @@ TEST(DenseRefine, ImprovesThoughHalfOfThePlantsDiffer) {
   }
 }
 
+TEST(DenseRefine, IsNotDrawnToWhereTheFixedMapIsCalm) {
+  // Plants grow larger across the strip, and most of what the moving map shows is its own.
+  for (int seed = 1; seed <= 5; ++seed) {
+    const Field field(seed);
+    const Field other(seed + 1000);
+    const auto grown = [&](const Eigen::Vector2d& p) {
+      return static_cast<float>(std::clamp(1.0 + 0.5 * p.y(), 0.2, 3.0)) * field.at(p);
+    };
+    Case c = makeCase(seed, 0.0);
+    c.fixed = sample({{-2, -2}, 0.05, 120, 280}, grown);
+    c.moving = sample({{0, 0}, 0.05, 44, 200},
+                      [&](const auto& p) { return grown(c.truth * p) + 2.0F * other.at(p); });
+    const DenseRefineResult result = refineDense(c.fixed, c.moving, c.truth, {});
+    ASSERT_EQ(result.status, RefineStatus::kConverged);
+    EXPECT_LT(worstCorner(result.fixed_from_moving, c.truth), 0.015) << "seed " << seed;
+  }
+}
+
 TEST(DenseRefine, SaysSoWhenThereIsNothingInCommon) {
   const Case c = makeCase(1, 0.0);
   const Eigen::Affine2d away = Eigen::Translation2d(100, 0) * c.truth;

@@ -24,7 +24,6 @@ void describe(OptionTable& table, RegistrationOptions& options) {
   table.group("affine", options.affine);
   table.group("hidden", options.hidden);
   table.group("dense", options.dense);
-  table.group("blocks", options.blocks);
   table.group("vegetation", options.vegetation);
   table.group("cpd", options.cpd);
   table.group("vertical", options.vertical);

@@ -12,7 +12,6 @@
 #include "agricolmap/4_associate/correlate/correlation_search.hpp"
 #include "agricolmap/4_associate/flow_association.hpp"
 #include "agricolmap/5_affine/estimate_affine.hpp"
-#include "agricolmap/6_refine/block_refine.hpp"
 #include "agricolmap/6_refine/cpd.hpp"
 #include "agricolmap/6_refine/dense_refine.hpp"
 #include "agricolmap/6_refine/vegetation.hpp"
@@ -31,7 +30,7 @@ enum class RefineKind { kDenseCpd, kDense, kCpd, kNone };
 struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
-  RefineKind refine = RefineKind::kDenseCpd;
+  RefineKind refine = RefineKind::kDense;
   PriorUncertainty prior;
   LevelOptions level;
   GridOptions grid;
@@ -41,7 +40,6 @@ struct RegistrationOptions {
   AffineOptions affine;
   HiddenGroundOptions hidden;
   DenseRefineOptions dense;
-  BlockRefineOptions blocks;
   VegetationOptions vegetation;
   CpdOptions cpd;
   VerticalOptions vertical;

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "agricolmap/6_refine/basins.hpp"
-#include "agricolmap/6_refine/block_refine.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap {
@@ -22,7 +21,7 @@ constexpr std::array<int, 3> kFinerFactors = {3, 2, 1};
 /// The finest level whose result is compared with what lies beside it: neighbouring basins of finer
 /// ones are nearer than plants are.
 constexpr int kBasinFactor = 2;
-/// At which blocks are moved alone, to lay the strip by them and for the uncertainty.
+/// At which blocks are moved alone, for the uncertainty.
 constexpr int kBlockFactor = 2;
 /// Finer cells must have at least this share of the coarser ones' overlap.
 constexpr double kLeastFinerOverlap = 0.5;
@@ -124,10 +123,6 @@ RefinedPose PoseRefinement::refineFinely(const RefinedPose& start) const {
     if (!finer || finer->overlap < kLeastFinerOverlap * best.overlap) break;
     best = *finer;
   }
-  // Too few blocks to compare say nothing about the pose.
-  const Level level = levelUnder(best.pose, kBlockFactor);
-  const auto laid = refineByBlocks(level.fixed, level.moving, best.pose, options_.blocks);
-  if (laid) best.pose = *laid;
   return best;
 }
 
