@@ -1,5 +1,6 @@
 #include "agricolmap/pipeline/placing.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string_view>
@@ -9,7 +10,8 @@
 namespace agricolmap {
 namespace {
 
-/// What a search that did not convince is followed by. Finer cells are dearer, and needed where the
+/// What a search that was not accepted is followed by, an ambiguous one, too: among places that fit
+/// equally badly the right one may be missing. Finer cells are dearer, and needed where the
 /// canopy is closed and only leaves tell places apart; then all headings and scales, should the
 /// rows have misled.
 struct Attempt {
@@ -57,6 +59,13 @@ bool better(const PairOutcome& a, const PairOutcome& b) {
   return a.evidence.significance > b.evidence.significance;
 }
 
+bool supersedes(const PairOutcome& later, const PairOutcome& earlier, double rival) {
+  if (earlier.verdict.status != Status::kAmbiguous) return better(later, earlier);
+  double highest = earlier.evidence.significance;
+  for (const RefinedPose& other : earlier.rivals) highest = std::max(highest, other.significance);
+  return later.verdict.status != Status::kRejected && highest < rival * later.evidence.significance;
+}
+
 std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
                                                   const PairOutcome* before) const {
   if (index >= kAttempts.size()) return std::nullopt;
@@ -97,8 +106,8 @@ PairOutcome PairPlacer::search() const {
     std::optional<PairOutcome> next = searchOnce(i, last ? &*last : nullptr);
     if (!next) break;
     last = next;
-    if (!best || better(*next, *best)) best = std::move(next);
-    if (best->verdict.status != Status::kRejected) break;
+    if (!best || supersedes(*next, *best, options_.verdict.rival)) best = std::move(next);
+    if (best->verdict.status == Status::kAccepted) break;
   }
   // How often it was tried, whichever of them was best.
   for (auto& [name, value] : best->counts) {

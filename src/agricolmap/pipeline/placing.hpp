@@ -40,6 +40,10 @@ struct PairOutcome {
 
 /// True when `a` is to be preferred to `b`: accepted first, then ambiguous, then more probable.
 bool better(const PairOutcome& a, const PairOutcome& b);
+/// True when the outcome of a later search replaces an earlier one of the same maps. Places that
+/// could not be told apart are not forgotten because a later search misses some of them: after an
+/// ambiguous outcome counts only a place that none of them rivals (`VerdictOptions::rival`).
+bool supersedes(const PairOutcome& later, const PairOutcome& earlier, double rival);
 
 /// Places the maps of one pair.
 class PairPlacer {
@@ -57,7 +61,7 @@ class PairPlacer {
         association_(association),
         refinement_(fixed, moving, space, options) {}
 
-  /// Searches, first coarsely and, where that does not convince, more finely and freely.
+  /// Searches, first coarsely and, where that is not accepted, more finely and freely.
   PairOutcome search() const;
   /// One search, the `attempt`-th of `search()`, from 0; nothing when it would find nothing new
   /// after `before`.
