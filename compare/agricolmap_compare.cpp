@@ -154,7 +154,7 @@ void writeResult(const std::filesystem::path& path, const std::string& text) {
 void writePages(const Arguments& arguments) {
   const std::filesystem::path folder = arguments.output;
   std::string identity;
-  const std::vector<Row> rows = readRows(folder / "rows.csv", identity);
+  const std::vector<Row> rows = withHeldAnswers(readRows(folder / "rows.csv", identity));
   writeResult(folder / "success_translation.csv", successCsv(rows, "translation"));
   writeResult(folder / "success_heading.csv", successCsv(rows, "heading"));
   writeResult(folder / "accuracy.csv", accuracyCsv(rows));

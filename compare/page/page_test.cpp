@@ -56,6 +56,22 @@ std::vector<Row> someRows() {
   return rows;
 }
 
+TEST(HeldAnswers, GoIcpIsCountedByWhatItHeld) {
+  Row held;
+  held.method = "go-icp";
+  held.status = "not_accepted";
+  held.correct = true;
+  Row refused = held;
+  refused.method = "default";
+  Row failed = held;
+  failed.status = "failed";
+  failed.correct = false;
+  const std::vector<Row> rows = withHeldAnswers({held, refused, failed});
+  EXPECT_TRUE(rows[0].success());
+  EXPECT_FALSE(rows[1].success()) << "who can say no is taken at its word";
+  EXPECT_FALSE(rows[2].accepted);
+}
+
 TEST(ComparePage, CountsSkippedRunsAsFailuresAndWrongAnswersApart) {
   const std::vector<Row> rows = someRows();
   const Group given_up = groupOf(
