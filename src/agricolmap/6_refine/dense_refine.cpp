@@ -298,8 +298,6 @@ DenseRefineResult refineDense(const SignalMap& fixed, const SignalMap& moving,
   result.fixed_from_moving = affineOf(current, samples.middle);
   result.overlap = sums.cells / static_cast<double>(samples.cells.size());
   result.correlation = correlationOf(sums, used);
-  for (int k = 0; k < kSignalChannels; ++k) result.residual[k] = noise.deviation[k];
-  result.information = sums.normal();
   return result;
 }
 

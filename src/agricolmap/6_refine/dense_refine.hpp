@@ -30,10 +30,6 @@ struct DenseRefineResult {
   int iterations = 0;
   double overlap = 0.0;      ///< share of the moving map's seen cells that the fixed map sees
   double correlation = 0.0;  ///< robustly weighted, over both channels
-  double residual[kSignalChannels] = {};  ///< robust deviation, in deviations of the signal
-  /// Curvature of the cost over (M11, M12, tx, M21, M22, ty), x, y relative to the moving map's
-  /// middle: the inverse is the covariance if residuals of cells were independent.
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 /// Minimises Σ_channels Σ_cells ρ((moving(x) − gain · fixed(A·x)) / σ) over a horizontal affine A,
