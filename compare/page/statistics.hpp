@@ -34,13 +34,13 @@ struct Group {
 
 Group groupOf(const std::vector<Row>& rows, const RowTest& test);
 
-/// What makes two rows of one setting comparable: the same pair of clouds, by data set and seed.
-using PairKey = std::pair<std::string, int>;
 /// Rows in which Go-ICP stands by the answer that it held when its time was up. By the rule of its
 /// paper it has none before the bound is proven, which the limit hardly ever leaves it the time
 /// for; whoever uses it would take what it has.
 std::vector<Row> withHeldAnswers(std::vector<Row> rows);
 
+/// What makes two rows of one setting comparable: the same pair of clouds, by data set and seed.
+using PairKey = std::pair<std::string, int>;
 PairKey pairOf(const Row& row);
 std::set<PairKey> pairsOf(const std::vector<Row>& rows, const RowTest& test);
 
