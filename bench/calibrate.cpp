@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "calibration.hpp"
 
 namespace agricolmap::campaign {
@@ -97,8 +97,8 @@ int run(int argc, char** argv) {
   for (const auto& [name, text] :
        {std::pair<const char*, std::string>{"calibration.json", calibrationJson(made)},
         {"reliability.csv", reliabilityCsv(made)}}) {
-    StagedFile file(folder / name, true);
-    writeText(file.path(), text);
+    io::StagedFile file(folder / name, true);
+    io::writeText(file.path(), text);
     file.commit();
   }
   fmt::print("{}", calibrationText(made));

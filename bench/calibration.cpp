@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "agricolmap/7_verdict/probability.hpp"
+#include "agricolmap/verdict/probability.hpp"
 
 namespace agricolmap::campaign {
 namespace {
 
-VerdictFacts factsOf(const PairRow& row) {
+verdict::VerdictFacts factsOf(const PairRow& row) {
   return {.uniqueness = row.uniqueness,
           .significance = row.significance,
           .agreeing = std::round(row.agreement * row.blocks),
@@ -29,12 +29,12 @@ VerdictFacts factsOf(const PairRow& row) {
 CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string& preset,
                              RightAbout about) {
   CalibrationSamples samples;
-  std::vector<std::array<double, kVerdictFeatures>> found;
+  std::vector<std::array<double, verdict::kVerdictFeatures>> found;
   std::vector<double> right;
   for (const PairRow& row : rows) {
     if (!preset.empty() && row.preset != preset) continue;
-    VerdictFeatures features = verdictFeatures(factsOf(row));
-    if (about == RightAbout::kPlane) features[kHeightFeature] = 0.0;
+    verdict::VerdictFeatures features = verdict::verdictFeatures(verdict::factsOf(row));
+    if (about == RightAbout::kPlane) features[verdict::kHeightFeature] = 0.0;
     if (!std::isfinite(row.errors.rms) || !std::isfinite(row.uniqueness)) {
       ++samples.without_answer;
       samples.solvable_without += row.negative ? 0 : 1;
@@ -47,19 +47,19 @@ CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string
     samples.cases.push_back(row.case_name);
   }
   const auto n = static_cast<Eigen::Index>(found.size());
-  samples.features.resize(n, kVerdictFeatures);
+  samples.features.resize(n, verdict::kVerdictFeatures);
   samples.right.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     samples.right(i) = right[static_cast<std::size_t>(i)];
     samples.features.row(i) = Eigen::Map<const Eigen::RowVectorXd>(
-        found[static_cast<std::size_t>(i)].data(), kVerdictFeatures);
+        found[static_cast<std::size_t>(i)].data(), verdict::kVerdictFeatures);
   }
   return samples;
 }
 
 Eigen::VectorXd featureSigns() {
-  Eigen::VectorXd signs(kVerdictFeatures);
-  for (std::size_t i = 0; i < kVerdictFeatures; ++i) {
+  Eigen::VectorXd signs(verdict::kVerdictFeatures);
+  for (std::size_t i = 0; i < verdict::kVerdictFeatures; ++i) {
     signs(static_cast<Eigen::Index>(i)) = kVerdictFeatureSigns[i];
   }
   return signs;
@@ -123,7 +123,7 @@ ThresholdCount countAt(const std::vector<Statement>& statements, double threshol
 std::string calibrationText(const Calibration& calibration) {
   std::string text = calibration.origin + "\n";
   text += fmt::format("{:28} {:10.4f}\n", "intercept", calibration.model.intercept);
-  for (std::size_t k = 0; k < kVerdictFeatures; ++k) {
+  for (std::size_t k = 0; k < verdict::kVerdictFeatures; ++k) {
     text += fmt::format("{:28} {:10.4f}\n", kVerdictFeatureNames[k],
                         calibration.model.weights(static_cast<Eigen::Index>(k)));
   }
@@ -152,7 +152,7 @@ std::string calibrationJson(const Calibration& calibration) {
   json["origin"] = calibration.origin;
   json["right"] = {{"rms_m", kRightRms}};
   json["intercept"] = calibration.model.intercept;
-  for (std::size_t k = 0; k < kVerdictFeatures; ++k) {
+  for (std::size_t k = 0; k < verdict::kVerdictFeatures; ++k) {
     json["weights"][kVerdictFeatureNames[k]] =
         calibration.model.weights(static_cast<Eigen::Index>(k));
   }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "agricolmap/7_verdict/probability.hpp"
+#include "agricolmap/verdict/probability.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 

@@ -15,8 +15,8 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "campaign_cases.hpp"
 #include "campaign_summary.hpp"
@@ -58,9 +58,9 @@ std::string identityOf(const std::vector<CampaignCase>& cases, bool uniform) {
   for (const CampaignCase& one : cases) {
     hash = hashText(one.text(), hash);
   }
-  for (const std::string& name : presetNames()) {
-    RegistrationOptions options = preset(name);
-    hash = hashText(name + dumpYaml(optionTable(options)), hash);
+  for (const std::string& name : pipeline::presetNames()) {
+    pipeline::RegistrationOptions options = pipeline::preset(name);
+    hash = hashText(name + config::dumpYaml(optionTable(options)), hash);
   }
   return fmt::format("agricolmap_campaign {}, source {}, options {:016x}, guess errors {}",
                      AGRICOLMAP_VERSION, kRevision, hash, uniform ? "uniform" : "full size");
@@ -194,8 +194,8 @@ void writeSummary(const Arguments& arguments, const std::vector<CampaignCase>& c
   const std::filesystem::path folder = arguments.output;
   for (const auto& [name, text] : {std::pair<const char*, std::string>{"summary.md", markdown},
                                    {"summary.csv", summaryCsv(lines)}}) {
-    StagedFile file(folder / name, true);
-    writeText(file.path(), text);
+    io::StagedFile file(folder / name, true);
+    io::writeText(file.path(), text);
     file.commit();
   }
   fmt::print("{}", markdown);

@@ -44,8 +44,8 @@ std::uint64_t hashPath(const std::string& path) {
 
 }  // namespace
 
-SimulationOptions CampaignCase::optionsFor(int seed) const {
-  SimulationOptions drawn = options;
+simulate::SimulationOptions CampaignCase::optionsFor(int seed) const {
+  simulate::SimulationOptions drawn = options;
   drawn.seed = fieldSeed(seed);
   const OptionTable table = optionTable(drawn);
   for (const OptionRange& range : ranges) {
@@ -63,9 +63,9 @@ SimulationOptions CampaignCase::optionsFor(int seed) const {
 }
 
 std::string CampaignCase::flightText(int seed) const {
-  SimulationOptions flown = optionsFor(seed);
-  const GeotagOptions geotag = flown.geotag;
-  const SimulationOptions usual;
+  simulate::SimulationOptions flown = optionsFor(seed);
+  const simulate::GeotagOptions geotag = flown.geotag;
+  const simulate::SimulationOptions usual;
   flown.ugv = usual.ugv;
   flown.geotag = usual.geotag;
   flown.geotag.utm = geotag.utm;
@@ -73,13 +73,13 @@ std::string CampaignCase::flightText(int seed) const {
   flown.views.sun_hours = usual.views.sun_hours;
   flown.views.weeds_pulled = usual.views.weeds_pulled;
   flown.other_field = flown.beyond_map = flown.mirrored = false;
-  return fmt::format("{} {}", static_cast<int>(source), dumpYaml(optionTable(flown)));
+  return fmt::format("{} {}", static_cast<int>(source), config::dumpYaml(optionTable(flown)));
 }
 
 std::string CampaignCase::text() const {
-  SimulationOptions copy = options;
+  simulate::SimulationOptions copy = options;
   std::string text = fmt::format("{} {} {} {}\n{}", name, static_cast<int>(source),
-                                 strips_per_field, scale_unknown, dumpYaml(optionTable(copy)));
+                                 strips_per_field, scale_unknown, config::dumpYaml(optionTable(copy)));
   for (const OptionRange& range : ranges) {
     text += fmt::format("{} {} {} {}\n", range.path, range.low, range.high,
                         fmt::join(range.values, " "));
@@ -104,33 +104,33 @@ std::vector<CampaignCase> suiteCases(const std::string& suite, bool uniform) {
 }
 
 const std::vector<NamedCrop>& namedCrops() {
-  static const std::vector<NamedCrop> all = {{"soybean", Crop::kSoybean},
-                                             {"sugar-beet-10m", Crop::kSugarBeet10m},
-                                             {"sugar-beet-20m", Crop::kSugarBeet20m},
-                                             {"winter-wheat", Crop::kWinterWheat},
-                                             {"maize", Crop::kMaize}};
+  static const std::vector<NamedCrop> all = {{"soybean", simulate::Crop::kSoybean},
+                                             {"sugar-beet-10m", simulate::Crop::kSugarBeet10m},
+                                             {"sugar-beet-20m", simulate::Crop::kSugarBeet20m},
+                                             {"winter-wheat", simulate::Crop::kWinterWheat},
+                                             {"maize", simulate::Crop::kMaize}};
   return all;
 }
 
 std::vector<NamedCrop> rowCrops() {
   std::vector<NamedCrop> crops = namedCrops();
-  std::erase_if(crops, [](const NamedCrop& one) { return one.crop == Crop::kWinterWheat; });
+  std::erase_if(crops, [](const NamedCrop& one) { return one.crop == simulate::Crop::kWinterWheat; });
   return crops;
 }
 
-const NamedCrop& namedCrop(Crop crop) {
+const NamedCrop& namedCrop(simulate::Crop crop) {
   return *std::find_if(namedCrops().begin(), namedCrops().end(),
                        [&](const NamedCrop& one) { return one.crop == crop; });
 }
 
-void setGuess(SimulationOptions& options, const GuessError& error, bool uniform) {
+void setGuess(simulate::SimulationOptions& options, const GuessError& error, bool uniform) {
   options.geotag.translation = error.translation;
   options.geotag.heading_deg = error.heading_deg;
   options.geotag.scale = error.scale;
   options.geotag.uniform = uniform;
 }
 
-void setDifference(SimulationOptions& options, const Difference& difference) {
+void setDifference(simulate::SimulationOptions& options, const Difference& difference) {
   options.views.leaf_unshared = difference.leaf_unshared;
   options.views.wind = difference.wind;
   options.views.growth = difference.growth;
@@ -139,11 +139,11 @@ void setDifference(SimulationOptions& options, const Difference& difference) {
   options.ugv.drift = difference.drift;
 }
 
-CampaignCase cropCase(std::string name, Crop crop, const GuessError& error, bool uniform,
+CampaignCase cropCase(std::string name, simulate::Crop crop, const GuessError& error, bool uniform,
                       const Target& target) {
   CampaignCase made;
   made.name = std::move(name);
-  made.options = cropPreset(crop);
+  made.options = simulate::cropPreset(crop);
   made.target = target;
   setGuess(made.options, error, uniform);
   return made;
@@ -152,14 +152,14 @@ CampaignCase cropCase(std::string name, Crop crop, const GuessError& error, bool
 void forgetGuess(CampaignCase& made) {
   // Uniform, as every heading must be as likely as every other.
   setGuess(made.options, {made.options.field.width, 180.0, 0.30}, true);
-  made.prior = PriorUncertainty::none();
+  made.prior = locate::PriorUncertainty::none();
 }
 
 void shiftByRows(CampaignCase& made) {
   const double spacing = made.options.field.row_spacing;
   made.options.geotag.across_rows = spacing * std::max(1.0, std::round(0.5 / spacing));
   setGuess(made.options, {0.1, 1.0, 0.03}, false);
-  made.prior = PriorUncertainty{.translation = 0.3, .heading_deg = 3.0, .scale = 0.05};
+  made.prior = locate::PriorUncertainty{.translation = 0.3, .heading_deg = 3.0, .scale = 0.05};
 }
 
 }  // namespace agricolmap::campaign

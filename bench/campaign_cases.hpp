@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/locate/association.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 #include "campaign_summary.hpp"
 
@@ -31,7 +31,7 @@ struct OptionRange {
 struct CampaignCase {
   std::string name;
   PairSource source = PairSource::kSimulated;
-  SimulationOptions options;
+  simulate::SimulationOptions options;
   /// Drawn over `options`: what the drone's view depends on for each field, the rest for each
   /// strip.
   std::vector<OptionRange> ranges;
@@ -39,14 +39,14 @@ struct CampaignCase {
   int max_pairs = 0;         ///< 0: as many as the campaign asks for
   int strips_per_field = 1;  ///< so many consecutive seeds share a field and the drone's view of it
   /// What the registration is told of the guess; nothing: its own default, the paper's.
-  std::optional<PriorUncertainty> prior;
+  std::optional<locate::PriorUncertainty> prior;
   bool scale_unknown = false;  ///< the registration is told that the moving file's unit is unknown
 
   /// The seed of the field that the pair of this seed lies in, and the strip's number in it.
   int fieldSeed(int seed) const { return seed - seed % strips_per_field; }
   int stripOf(int seed) const { return seed % strips_per_field; }
   /// The simulation's options for the pair of this seed, ranges drawn.
-  SimulationOptions optionsFor(int seed) const;
+  simulate::SimulationOptions optionsFor(int seed) const;
   /// Equal for pairs whose drone's clouds are the same to the bit.
   std::string flightText(int seed) const;
   /// All that distinguishes this case from others, to tell campaigns apart.

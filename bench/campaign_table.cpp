@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/text.hpp"
+#include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::campaign {
 namespace {
@@ -22,15 +22,15 @@ constexpr std::string_view kHeader =
     "note";
 constexpr std::size_t kColumns = 39;
 
-using ErrorField = double RegistrationErrors::*;
-constexpr std::array<ErrorField, 8> kErrorFields = {&RegistrationErrors::rms,
-                                                    &RegistrationErrors::rms_horizontal,
-                                                    &RegistrationErrors::rms_vertical,
-                                                    &RegistrationErrors::worst,
-                                                    &RegistrationErrors::rms_to_best_affine,
-                                                    &RegistrationErrors::translation,
-                                                    &RegistrationErrors::rotation,
-                                                    &RegistrationErrors::scale};
+using ErrorField = double evaluate::RegistrationErrors::*;
+constexpr std::array<ErrorField, 8> kErrorFields = {&evaluate::RegistrationErrors::rms,
+                                                    &evaluate::RegistrationErrors::rms_horizontal,
+                                                    &evaluate::RegistrationErrors::rms_vertical,
+                                                    &evaluate::RegistrationErrors::worst,
+                                                    &evaluate::RegistrationErrors::rms_to_best_affine,
+                                                    &evaluate::RegistrationErrors::translation,
+                                                    &evaluate::RegistrationErrors::rotation,
+                                                    &evaluate::RegistrationErrors::scale};
 using EvidenceField = double PairRow::*;
 constexpr std::array<EvidenceField, 15> kEvidenceFields = {
     &PairRow::uniqueness,         &PairRow::agreement,
@@ -89,13 +89,13 @@ class LineReader {
   double real() {
     const std::string_view field = fields_[next_++];
     if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto value = parseNumber(field);
+    const auto value = io::parseNumber(field);
     if (!value) throw InputError(fmt::format("{}: '{}' is no number", place_, field));
     return *value;
   }
   std::int64_t whole() {
     const std::string_view field = fields_[next_++];
-    const auto value = parseInteger(field);
+    const auto value = io::parseInteger(field);
     if (!value) throw InputError(fmt::format("{}: '{}' is no whole number", place_, field));
     return *value;
   }
@@ -142,8 +142,8 @@ std::vector<PairRow> parseRows(const std::vector<std::string>& lines,
 
 }  // namespace
 
-RegistrationErrors noErrors() {
-  RegistrationErrors errors;
+evaluate::RegistrationErrors noErrors() {
+  evaluate::RegistrationErrors errors;
   for (const ErrorField field : kErrorFields) {
     errors.*field = std::numeric_limits<double>::quiet_NaN();
   }

@@ -26,7 +26,7 @@ struct PairRow {
   bool accepted = false;
   bool correct = false;   ///< within SuccessLimits, whatever the verdict
   bool negative = false;  ///< the clouds come from different fields: nothing can be correct
-  RegistrationErrors errors;
+  evaluate::RegistrationErrors errors;
   double uniqueness = std::numeric_limits<double>::quiet_NaN();
   double agreement = std::numeric_limits<double>::quiet_NaN();
   double significance = std::numeric_limits<double>::quiet_NaN();
@@ -57,7 +57,7 @@ struct PairRow {
 };
 
 /// Errors of a registration without a transform: all NaN.
-RegistrationErrors noErrors();
+evaluate::RegistrationErrors noErrors();
 
 /// The rows of a campaign's CSV and the line that says where they come from. A last line that was
 /// cut off is left out. Throws InputError naming file, line and what is wrong.

@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "agricolmap/io/text.hpp"
+#include "agricolmap/io/text/text.hpp"
 #include "campaign_cases.hpp"
 #include "campaign_summary.hpp"
 #include "svg_plot.hpp"
@@ -191,7 +191,7 @@ void addReliability(const Rows& rows, std::vector<PageFile>& files, std::string&
   std::vector<Statement> statements;
   for (const PairRow* row : rows) {
     if (!std::isfinite(row->probability)) continue;
-    const bool right = !row->negative && row->errors.rms <= SuccessLimits{}.rms;
+    const bool right = !row->negative && row->errors.rms <= evaluate::SuccessLimits{}.rms;
     statements.push_back({row->probability, right});
   }
   if (statements.empty()) return;
@@ -270,7 +270,7 @@ std::optional<CurveName> parseCurveName(const std::string& case_name) {
   constexpr std::string_view kBegin = "curve-";
   const std::size_t equals = case_name.rfind('=');
   if (!case_name.starts_with(kBegin) || equals == std::string::npos) return std::nullopt;
-  const auto value = parseNumber(std::string_view(case_name).substr(equals + 1));
+  const auto value = io::parseNumber(std::string_view(case_name).substr(equals + 1));
   if (!value) return std::nullopt;
   const std::string middle = case_name.substr(kBegin.size(), equals - kBegin.size());
   for (const SeriesStyle& style : seriesStyles()) {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/io/raster_import.hpp"
-#include "agricolmap/simulate/ortho_file.hpp"
+#include "agricolmap/io/raster/raster_import.hpp"
+#include "agricolmap/simulate/ortho/ortho_file.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
 namespace agricolmap::campaign {
@@ -44,7 +44,7 @@ constexpr std::array<std::array<double, 2>, 16> kBeetOutline = {{{3640, 160},
                                                                  {2080, 1890},
                                                                  {2900, 1080},
                                                                  {3240, 690}}};
-constexpr PixelWindow kAllBeets = {1760, 140, 2560, 2880};
+constexpr io::PixelWindow kAllBeets = {1760, 140, 2560, 2880};
 
 /// Even–odd rule.
 bool insideBeets(double col, double row) {
@@ -58,7 +58,7 @@ bool insideBeets(double col, double row) {
   return inside;
 }
 
-CampaignPair fromStrip(SimulatedStrip strip, std::shared_ptr<const Cloud> fixed) {
+CampaignPair fromStrip(simulate::SimulatedStrip strip, std::shared_ptr<const Cloud> fixed) {
   CampaignPair made;
   made.fixed = std::move(fixed);
   made.moving = std::move(strip.ugv);
@@ -69,9 +69,9 @@ CampaignPair fromStrip(SimulatedStrip strip, std::shared_ptr<const Cloud> fixed)
   return made;
 }
 
-OrthoFileOptions beetFileOptions() {
-  OrthoFileOptions file;
-  file.raster.bands = BandOrder::kGrb;  // its false colours have red and green swapped
+simulate::OrthoFileOptions beetFileOptions() {
+  simulate::OrthoFileOptions file;
+  file.raster.bands = io::BandOrder::kGrb;  // its false colours have red and green swapped
   file.gsd = kBeetGsd;
   return file;
 }
@@ -87,7 +87,7 @@ std::string PairMaker::unavailable(PairSource source) const {
 }
 
 CampaignPair PairMaker::make(const CampaignCase& chosen, int seed) {
-  const SimulationOptions options = chosen.optionsFor(seed);
+  const simulate::SimulationOptions options = chosen.optionsFor(seed);
   const int strip = chosen.stripOf(seed);
   if (chosen.source == PairSource::kSoybean) return soybeanPair(options, strip);
   fly(chosen, seed, options);
@@ -95,7 +95,7 @@ CampaignPair PairMaker::make(const CampaignCase& chosen, int seed) {
   return fromStrip(ortho_->strip(options, strip), {ortho_, &ortho_->uav()});
 }
 
-void PairMaker::fly(const CampaignCase& chosen, int seed, const SimulationOptions& options) {
+void PairMaker::fly(const CampaignCase& chosen, int seed, const simulate::SimulationOptions& options) {
   std::string flight = chosen.flightText(seed);
   if (flight == flown_) return;
   // A hectare takes gigabytes: the old view goes before the new one is made.
@@ -103,29 +103,29 @@ void PairMaker::fly(const CampaignCase& chosen, int seed, const SimulationOption
   field_.reset();
   ortho_.reset();
   if (chosen.source == PairSource::kSimulated) {
-    field_ = std::make_shared<const SimulatedField>(options);
+    field_ = std::make_shared<const simulate::SimulatedField>(options);
   } else {
-    OrthoField field =
+    simulate::OrthoField field =
         chosen.source == PairSource::kBeetMosaic ? readBeets(options.seed) : readAllBeets();
     field.row_heading = kBeetRowHeading;
-    ortho_ = std::make_shared<const SimulatedOrtho>(std::move(field), options);
+    ortho_ = std::make_shared<const simulate::SimulatedOrtho>(std::move(field), options);
   }
   flown_ = std::move(flight);
 }
 
-OrthoField PairMaker::readBeets(int seed) const {
+simulate::OrthoField PairMaker::readBeets(int seed) const {
   // Another window for each seed, by up to half a metre.
   Random random = Random::stream(static_cast<std::uint64_t>(seed), 0xBEE7);
-  PixelWindow window{kBeetMiddleCol - kBeetWindow / 2 - 50, kBeetMiddleRow + 51 - kBeetWindow / 2,
+  io::PixelWindow window{kBeetMiddleCol - kBeetWindow / 2 - 50, kBeetMiddleRow + 51 - kBeetWindow / 2,
                      kBeetWindow, kBeetWindow};
   window.col += static_cast<int>(random.below(101));
   window.row -= static_cast<int>(random.below(101));
-  return readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, beetFileOptions(), window);
+  return simulate::readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, beetFileOptions(), window);
 }
 
-OrthoField PairMaker::readAllBeets() const {
-  OrthoField field =
-      readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, beetFileOptions(), kAllBeets);
+simulate::OrthoField PairMaker::readAllBeets() const {
+  simulate::OrthoField field =
+      simulate::readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, beetFileOptions(), kAllBeets);
   if (field.valid.empty()) {
     field.valid = Raster<std::uint8_t>(field.colour.rows(), field.colour.cols());
     for (std::uint8_t& valid : field.valid) valid = 1;
@@ -143,9 +143,9 @@ void PairMaker::loadSoybean() {
   const std::filesystem::path folder = shared_ / kSoybeanFolder;
   Soybean loaded;
   loaded.cloud = std::make_shared<const Cloud>(
-      importOrthoDsm(folder / "soy_ortho.tif", folder / "soy_dsm.tif"));
-  OrthoField& field = loaded.field;
-  field = readOrtho({.ortho = folder / "soy_ortho.tif",
+      io::importOrthoDsm(folder / "soy_ortho.tif", folder / "soy_dsm.tif"));
+  simulate::OrthoField& field = loaded.field;
+  field = simulate::readOrtho({.ortho = folder / "soy_ortho.tif",
                      .dsm = folder / "soy_dsm.tif",
                      .dtm = folder / "soy_dtm.tif"});
   field.row_heading = kSoybeanRowHeading;
@@ -155,13 +155,13 @@ void PairMaker::loadSoybean() {
   soybean_ = std::move(loaded);
 }
 
-CampaignPair PairMaker::soybeanPair(const SimulationOptions& options, int strip) {
+CampaignPair PairMaker::soybeanPair(const simulate::SimulationOptions& options, int strip) {
   if (!soybean_) loadSoybean();
-  SimulationOptions here = options;
+  simulate::SimulationOptions here = options;
   here.uav.gsd = soybean_->field.gsd;
   // The fixed cloud is the real one, as imported; only the strip passes through the simulator.
   CampaignPair made =
-      fromStrip(SimulatedOrtho(soybean_->field, here).strip(here, strip), soybean_->cloud);
+      fromStrip(simulate::SimulatedOrtho(soybean_->field, here).strip(here, strip), soybean_->cloud);
   const Eigen::Translation3d move(soybean_->place);
   made.prior = move * made.prior;
   made.truth.best_affine = move * made.truth.best_affine;

@@ -9,7 +9,7 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
-#include "agricolmap/simulate/ortho.hpp"
+#include "agricolmap/simulate/ortho/ortho.hpp"
 #include "campaign_cases.hpp"
 
 namespace agricolmap::campaign {
@@ -19,7 +19,7 @@ struct CampaignPair {
   std::shared_ptr<const Cloud> fixed;
   Cloud moving;
   Eigen::Affine3d prior;  ///< moving file → fixed file
-  Truth truth;
+  evaluate::Truth truth;
   bool overlaps = true;
 };
 
@@ -36,21 +36,21 @@ class PairMaker {
  private:
   struct Soybean {
     std::shared_ptr<const Cloud> cloud;  ///< the whole plot as `agricolmap import` makes it
-    OrthoField field;
+    simulate::OrthoField field;
     Eigen::Vector3d place;  ///< of the field frame's zero in file coordinates [m]
   };
   /// Makes `field_` or `ortho_` the drone's view of this pair.
-  void fly(const CampaignCase& chosen, int seed, const SimulationOptions& options);
-  CampaignPair soybeanPair(const SimulationOptions& options, int strip);
-  OrthoField readBeets(int seed) const;
-  OrthoField readAllBeets() const;
+  void fly(const CampaignCase& chosen, int seed, const simulate::SimulationOptions& options);
+  CampaignPair soybeanPair(const simulate::SimulationOptions& options, int strip);
+  simulate::OrthoField readBeets(int seed) const;
+  simulate::OrthoField readAllBeets() const;
   void loadSoybean();
 
   std::filesystem::path shared_;
   std::optional<Soybean> soybean_;
   // The latest drone's view, of one of two kinds.
-  std::shared_ptr<const SimulatedField> field_;
-  std::shared_ptr<const SimulatedOrtho> ortho_;
+  std::shared_ptr<const simulate::SimulatedField> field_;
+  std::shared_ptr<const simulate::SimulatedOrtho> ortho_;
   std::string flown_;  ///< CampaignCase::flightText of it
 };
 

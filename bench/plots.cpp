@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "locating_page.hpp"
 
 namespace agricolmap::campaign {
@@ -43,8 +43,8 @@ int run(int argc, char** argv) {
     throw OutputError(fmt::format("{}: cannot be made: {}", output, error.message()));
   }
   for (const PageFile& page : locatingPage(rows, origins, preset)) {
-    StagedFile file(folder / page.name, true);
-    writeText(file.path(), page.text);
+    io::StagedFile file(folder / page.name, true);
+    io::writeText(file.path(), page.text);
     file.commit();
     fmt::print("{}\n", (folder / page.name).string());
   }

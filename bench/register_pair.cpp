@@ -24,7 +24,7 @@ std::string stageText(const StageTimes& times) {
 }
 
 /// What the program found out about its answer.
-void fillEvidence(const Registration& result, PairRow& row) {
+void fillEvidence(const pipeline::Registration& result, PairRow& row) {
   for (const auto& [name, value] : result.counts) {
     if (name == "attempts") row.attempts = value;
   }
@@ -41,7 +41,7 @@ void fillEvidence(const Registration& result, PairRow& row) {
   }
   row.blocks = static_cast<double>(result.evidence.blocks.size());
   double sum = 0.0;
-  for (const BlockEvidence& block : result.evidence.blocks) {
+  for (const verdict::BlockEvidence& block : result.evidence.blocks) {
     if (block.agrees) sum += block.offset.squaredNorm();
   }
   if (result.evidence.agreeing > 0) {
@@ -52,13 +52,13 @@ void fillEvidence(const Registration& result, PairRow& row) {
 }  // namespace
 
 bool knowsScaleUnknown() {
-  RegistrationOptions options;
+  pipeline::RegistrationOptions options;
   return optionTable(options).find(kScaleUnknown) != nullptr;
 }
 
-RegistrationOptions variant(const std::string& text, const CampaignCase& chosen) {
+pipeline::RegistrationOptions variant(const std::string& text, const CampaignCase& chosen) {
   const std::size_t end = text.find(':');
-  RegistrationOptions options = preset(text.substr(0, end));
+  pipeline::RegistrationOptions options = pipeline::preset(text.substr(0, end));
   const OptionTable table = optionTable(options);
   if (chosen.prior) options.prior = *chosen.prior;
   if (chosen.scale_unknown) parseOption(*table.find(kScaleUnknown), "true")();
@@ -79,8 +79,8 @@ RegistrationOptions variant(const std::string& text, const CampaignCase& chosen)
 }
 
 bool canRegister(const std::string& preset_name, const CampaignCase& chosen) {
-  const RegistrationOptions options = variant(preset_name, chosen);
-  return options.association != AssociationKind::kFlow ||
+  const pipeline::RegistrationOptions options = variant(preset_name, chosen);
+  return options.association != pipeline::AssociationKind::kFlow ||
          (!options.prior.anywhere() && !chosen.scale_unknown);
 }
 
@@ -95,20 +95,20 @@ PairRow registerPair(const CampaignPair& pair, const std::string& preset_name,
   StageTimes times;
   const Stopwatch watch;
   try {
-    const Registration result =
-        registerClouds(*pair.fixed, pair.moving, pair.prior, variant(preset_name, chosen), times);
+    const pipeline::Registration result =
+        pipeline::registerClouds(*pair.fixed, pair.moving, pair.prior, variant(preset_name, chosen), times);
     row.total_s = watch.seconds();
-    row.accepted = result.verdict.status == Status::kAccepted;
+    row.accepted = result.verdict.status == verdict::Status::kAccepted;
     row.status = toString(result.verdict.status);
     fillEvidence(result, row);
     row.probability = result.verdict.probability;
-    if (const auto coverage = coverageOf(result, *pair.fixed, pair.moving, pair.truth)) {
+    if (const auto coverage = evaluate::coverageOf(result, *pair.fixed, pair.moving, pair.truth)) {
       row.mahalanobis2 = coverage->pose_distance2;
       row.centre_mahalanobis2 = coverage->shift_distance2;
       row.height_mahalanobis2 = coverage->height_distance2;
     }
     if (result.has_transform) {
-      row.errors = evaluateTransform(result.fixed_from_moving, pair.truth, pair.moving);
+      row.errors = evaluate::evaluateTransform(result.fixed_from_moving, pair.truth, pair.moving);
       row.correct = pair.overlaps && row.errors.within({});
     }
     if (!row.accepted) row.note = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));

@@ -15,7 +15,7 @@ bool knowsScaleUnknown();
 
 /// The options of `preset` or `preset:key=value:key=value`, told what the case says about its
 /// guess. Throws UsageError for unknown ones.
-RegistrationOptions variant(const std::string& text, const CampaignCase& chosen);
+pipeline::RegistrationOptions variant(const std::string& text, const CampaignCase& chosen);
 
 /// The flow starts from a guess: it cannot search everywhere or for a scale.
 bool canRegister(const std::string& preset_name, const CampaignCase& chosen);

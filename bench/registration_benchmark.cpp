@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "agricolmap/io/cloud_reader.hpp"
-#include "agricolmap/io/cloud_writer.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/pipeline/refinement.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/simulate/simulate.hpp"
@@ -14,39 +14,39 @@ namespace agricolmap {
 namespace {
 
 /// The pair, its files and what each stage starts from.
-class Scene {
+class report::Scene {
  public:
-  static const Scene& get() {
-    static const Scene scene;
+  static const report::Scene& get() {
+    static const report::Scene scene;
     return scene;
   }
-  ~Scene() {
+  ~report::Scene() {
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
   }
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
+  report::Scene(const report::Scene&) = delete;
+  report::Scene& operator=(const report::Scene&) = delete;
 
-  SimulatedPair pair;
-  RegistrationOptions options = preset("default");
-  Registration result;
+  simulate::SimulatedPair pair;
+  pipeline::RegistrationOptions options = pipeline::preset("default");
+  pipeline::Registration result;
   std::filesystem::path folder;
 
  private:
-  Scene() {
-    SimulationOptions simulation = cropPreset(Crop::kSoybean);
+  report::Scene() {
+    simulate::SimulationOptions simulation = simulate::cropPreset(simulate::Crop::kSoybean);
     simulation.seed = 4242;
     simulation.geotag.translation = 5.0;
     simulation.geotag.heading_deg = 11.5;
     simulation.geotag.scale = 0.3;
-    pair = simulatePair(simulation);
+    pair = simulate::simulatePair(simulation);
     folder = std::filesystem::temp_directory_path() /
              ("agricolmap_benchmark_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
-    writePly(folder / "uav.ply", pair.uav);
-    writePly(folder / "ugv.ply", pair.ugv);
+    io::writePly(folder / "uav.ply", pair.uav);
+    io::writePly(folder / "ugv.ply", pair.ugv);
     StageTimes times;
-    result = registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+    result = pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
   }
 };
 
@@ -57,49 +57,49 @@ void countPoints(benchmark::State& state, std::size_t points) {
 }
 
 void readPly(benchmark::State& state) {
-  const Scene& scene = Scene::get();
+  const report::Scene& scene = report::Scene::get();
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(readCloud(scene.folder / "uav.ply"));
-    benchmark::DoNotOptimize(readCloud(scene.folder / "ugv.ply"));
+    benchmark::DoNotOptimize(io::readCloud(scene.folder / "uav.ply"));
+    benchmark::DoNotOptimize(io::readCloud(scene.folder / "ugv.ply"));
   }
   countPoints(state, scene.pair.uav.size() + scene.pair.ugv.size());
 }
 
-Box2 windowOf(const GridMap& map) {
+map::Box2 windowOf(const map::GridMap& map) {
   const GridFrame& frame = map.frame;
   return {frame.corner,
           (frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows)).eval()};
 }
 
 void level(benchmark::State& state) {
-  const Scene& scene = Scene::get();
+  const report::Scene& scene = report::Scene::get();
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
-        levelCloud(scene.pair.uav, Eigen::Affine3d::Identity(), scene.options.level));
+        map::levelCloud(scene.pair.uav, Eigen::Affine3d::Identity(), scene.options.level));
     benchmark::DoNotOptimize(
-        levelCloud(scene.pair.ugv, Eigen::Affine3d::Identity(), scene.options.level));
+        map::levelCloud(scene.pair.ugv, Eigen::Affine3d::Identity(), scene.options.level));
   }
   countPoints(state, scene.pair.uav.size() + scene.pair.ugv.size());
 }
 
 void grid(benchmark::State& state) {
-  const Scene& scene = Scene::get();
-  const Registration& r = scene.result;
+  const report::Scene& scene = report::Scene::get();
+  const pipeline::Registration& r = scene.result;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(makeGridMap(scene.pair.uav, r.frames.levelled_from_fixed,
+    benchmark::DoNotOptimize(map::makeGridMap(scene.pair.uav, r.frames.levelled_from_fixed,
                                          windowOf(r.fixed_map), scene.options.grid));
-    benchmark::DoNotOptimize(makeGridMap(scene.pair.ugv, r.frames.levelled_from_moving,
+    benchmark::DoNotOptimize(map::makeGridMap(scene.pair.ugv, r.frames.levelled_from_moving,
                                          windowOf(r.moving_map), scene.options.grid));
   }
   countPoints(state, scene.pair.uav.size() + scene.pair.ugv.size());
 }
 
 void search(benchmark::State& state) {
-  const Scene& scene = Scene::get();
-  const Registration& r = scene.result;
-  CorrelationOptions options = scene.options.search;
+  const report::Scene& scene = report::Scene::get();
+  const pipeline::Registration& r = scene.result;
+  locate::CorrelationOptions options = scene.options.search;
   options.signal = scene.options.signal;
-  const CorrelationSearch association(options);
+  const locate::CorrelationSearch association(options);
   for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     benchmark::DoNotOptimize(association.associate(r.fixed_map, r.moving_map, r.space, times));
@@ -107,9 +107,9 @@ void search(benchmark::State& state) {
 }
 
 void flow(benchmark::State& state) {
-  const Scene& scene = Scene::get();
-  const Registration& r = scene.result;
-  const FlowAssociation association(scene.options.flow);
+  const report::Scene& scene = report::Scene::get();
+  const pipeline::Registration& r = scene.result;
+  const paper::FlowAssociation association(scene.options.flow);
   for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     benchmark::DoNotOptimize(association.associate(r.fixed_map, r.moving_map, r.space, times));
@@ -117,33 +117,33 @@ void flow(benchmark::State& state) {
 }
 
 void refine(benchmark::State& state) {
-  const Scene& scene = Scene::get();
-  const Registration& r = scene.result;
+  const report::Scene& scene = report::Scene::get();
+  const pipeline::Registration& r = scene.result;
   for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     std::vector<std::pair<std::string, double>> counts;
-    const PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
+    const pipeline::PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
     benchmark::DoNotOptimize(refinement.choose(r.association.placements, times, counts));
   }
 }
 
 void verdict(benchmark::State& state) {
-  const Scene& scene = Scene::get();
-  const Registration& r = scene.result;
-  const PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
+  const report::Scene& scene = report::Scene::get();
+  const pipeline::Registration& r = scene.result;
+  const pipeline::PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
   for ([[maybe_unused]] auto _ : state) {
-    Finding finding = refinement.examine(r.pose, {}, r.vertical.residual);
+    verdict::Finding finding = refinement.examine(r.pose, {}, r.vertical.residual);
     finding.overlap = r.overlap;
-    benchmark::DoNotOptimize(judge(finding, r.space, scene.options.verdict));
+    benchmark::DoNotOptimize(verdict::judge(finding, r.space, scene.options.verdict));
   }
 }
 
 void whole(benchmark::State& state) {
-  const Scene& scene = Scene::get();
+  const report::Scene& scene = report::Scene::get();
   for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
     benchmark::DoNotOptimize(
-        registerClouds(scene.pair.uav, scene.pair.ugv, scene.pair.prior, scene.options, times));
+        pipeline::registerClouds(scene.pair.uav, scene.pair.ugv, scene.pair.prior, scene.options, times));
   }
 }
 

@@ -10,13 +10,13 @@ namespace agricolmap::campaign {
 
 struct NamedCrop {
   std::string name;
-  Crop crop;
+  simulate::Crop crop;
 };
 /// soybean, sugar-beet-10m, sugar-beet-20m, winter-wheat, maize.
 const std::vector<NamedCrop>& namedCrops();
 /// The same without the drilled cereal, whose rows are too narrow to be told apart.
 std::vector<NamedCrop> rowCrops();
-const NamedCrop& namedCrop(Crop crop);
+const NamedCrop& namedCrop(simulate::Crop crop);
 
 /// How wrong the initial guess is.
 struct GuessError {
@@ -26,7 +26,7 @@ struct GuessError {
 };
 inline constexpr GuessError kEasyGuess = {1.0, 2.0, 0.05};
 inline constexpr GuessError kPaperGuess = {5.0, 11.5, 0.30};
-void setGuess(SimulationOptions& options, const GuessError& error, bool uniform);
+void setGuess(simulate::SimulationOptions& options, const GuessError& error, bool uniform);
 
 /// How much the two visits differ.
 struct Difference {
@@ -39,10 +39,10 @@ struct Difference {
 };
 /// The hard views of the project's target.
 inline constexpr Difference kHardViews = {0.6, 0.03, 1.3, 4.0, 0.5, 0.01};
-void setDifference(SimulationOptions& options, const Difference& difference);
+void setDifference(simulate::SimulationOptions& options, const Difference& difference);
 
 /// A case of the crop's preset with the guess's error.
-CampaignCase cropCase(std::string name, Crop crop, const GuessError& error, bool uniform,
+CampaignCase cropCase(std::string name, simulate::Crop crop, const GuessError& error, bool uniform,
                       const Target& target = {});
 /// Makes the guess useless and says so: any position and heading, scales within 30 %.
 void forgetGuess(CampaignCase& made);

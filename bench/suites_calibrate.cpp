@@ -10,7 +10,7 @@ namespace agricolmap::campaign {
 namespace {
 
 /// The settings of the calibration. Factors of the crop's own are spelled out for it.
-std::vector<OptionRange> calibrationRanges(const SimulationOptions& crop) {
+std::vector<OptionRange> calibrationRanges(const simulate::SimulationOptions& crop) {
   const auto times = [](double value, double low, double high) {
     return std::pair<double, double>(value * low, value * high);
   };

@@ -34,7 +34,7 @@ const std::vector<Series>& series() {
 
 std::vector<CampaignCase> curvesSuite(bool uniform) {
   std::vector<CampaignCase> cases;
-  for (const Crop crop : {Crop::kSugarBeet10m, Crop::kWinterWheat}) {
+  for (const simulate::Crop crop : {simulate::Crop::kSugarBeet10m, simulate::Crop::kWinterWheat}) {
     for (const Series& one : series()) {
       for (const double value : one.values) {
         CampaignCase made =

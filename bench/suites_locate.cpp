@@ -27,7 +27,7 @@ class Builder {
   Builder(Settings settings, bool uniform) : settings_(std::move(settings)), uniform_(uniform) {}
 
   /// Hard views, the paper's guess, 20 m x 20 m.
-  CampaignCase& add(const std::string& name, Crop crop, const Target& target = {}) {
+  CampaignCase& add(const std::string& name, simulate::Crop crop, const Target& target = {}) {
     CampaignCase made = cropCase(settings_.prefix + name, crop, kPaperGuess, uniform_, target);
     setDifference(made.options, settings_.hard);
     made.options.field.row_spacing *= settings_.row_spacing;
@@ -45,17 +45,17 @@ class Builder {
                              {.min_success = 0.98, .max_time = 1.5, .max_refused = 0.03}));
     }
     const Target dense = {.max_rms3d = 0.03, .min_found = 0.90, .max_false = 0.0};
-    anywhereIn(kLarge, add("none-50m-winter-wheat", Crop::kWinterWheat, dense));
-    CampaignCase& closed = add("none-50m-closed-soybean", Crop::kSoybean, dense);
+    anywhereIn(kLarge, add("none-50m-winter-wheat", simulate::Crop::kWinterWheat, dense));
+    CampaignCase& closed = add("none-50m-closed-soybean", simulate::Crop::kSoybean, dense);
     closed.options.field.plant_size = 2.2;  // four fifths of the soil covered
     anywhereIn(kLarge, closed);
-    for (const Crop crop : {Crop::kSoybean, Crop::kSugarBeet10m}) {
+    for (const simulate::Crop crop : {simulate::Crop::kSoybean, simulate::Crop::kSugarBeet10m}) {
       CampaignCase& made =
           add("none-100m-" + namedCrop(crop).name, crop, {.min_success = 0.97, .max_time = 6.0});
       made.options.uav.gsd = kHectareGsd;
       anywhereIn(kHectare, made);
     }
-    CampaignCase& real = add("semireal-none", Crop::kSugarBeet10m, {.min_success = 0.98});
+    CampaignCase& real = add("semireal-none", simulate::Crop::kSugarBeet10m, {.min_success = 0.98});
     real.source = PairSource::kBeetWhole;
     // Half of the texture, nothing pulled: the other differences act on the mosaic as on plants.
     real.options.views.leaf_unshared = 0.5;
@@ -67,14 +67,14 @@ class Builder {
     for (const auto& [name, crop] : namedCrops()) {
       add("prior-hard-" + name, crop, {.max_rms = 0.012, .max_refused = 0.03});
     }
-    for (const Crop crop : {Crop::kSoybean, Crop::kSugarBeet10m, Crop::kSugarBeet20m}) {
+    for (const simulate::Crop crop : {simulate::Crop::kSoybean, simulate::Crop::kSugarBeet10m, simulate::Crop::kSugarBeet20m}) {
       const std::string& name = namedCrop(crop).name;
       CampaignCase& unit = add("scale-unknown-" + name, crop, {.min_success = 0.95});
       forgetGuess(unit);
       unit.options.geotag.unknown_scale = 10.0;
       unit.scale_unknown = true;
     }
-    for (const Crop crop : {Crop::kSoybean, Crop::kSugarBeet10m}) {
+    for (const simulate::Crop crop : {simulate::Crop::kSoybean, simulate::Crop::kSugarBeet10m}) {
       const std::string& name = namedCrop(crop).name;
       add("overlap-40-" + name, crop, {.max_false = 0.0}).options.ugv.overhang = 0.6;
       CampaignCase& edge = add("overlap-80-none-" + name, crop, {.min_success = 0.95});

@@ -8,14 +8,14 @@ namespace agricolmap::campaign {
 namespace {
 
 CampaignCase beetMosaicCase(bool uniform) {
-  CampaignCase made = cropCase("semireal-sugarbeet", Crop::kSugarBeet10m, {3.0, 6.0, 0.15}, uniform,
+  CampaignCase made = cropCase("semireal-sugarbeet", simulate::Crop::kSugarBeet10m, {3.0, 6.0, 0.15}, uniform,
                                {.min_success = 0.98, .max_rms = 0.008});
   made.source = PairSource::kBeetMosaic;
   return made;
 }
 
 CampaignCase soybeanCase(bool uniform) {
-  CampaignCase made = cropCase("real-soybean", Crop::kSoybean, {1.0, 3.0, 0.10}, uniform,
+  CampaignCase made = cropCase("real-soybean", simulate::Crop::kSoybean, {1.0, 3.0, 0.10}, uniform,
                                {.min_success = 1.0, .max_rms = 0.02, .worst_rms = true});
   made.source = PairSource::kSoybean;
   made.max_pairs = 10;
@@ -45,7 +45,7 @@ std::vector<CampaignCase> paperSuite(bool uniform) {
   for (const auto& [name, crop] : crops) {
     cases.push_back(cropCase(name + "-joint", crop, kPaperGuess, uniform, joint));
   }
-  cases.push_back(cropCase("maize-joint", Crop::kMaize, kPaperGuess, uniform));
+  cases.push_back(cropCase("maize-joint", simulate::Crop::kMaize, kPaperGuess, uniform));
   for (const auto& [name, crop] : crops) {
     cases.push_back(cropCase("other-field-" + name, crop, kPaperGuess, uniform, other));
     cases.back().options.other_field = true;

@@ -43,7 +43,7 @@ TEST(Cases, ReportedCalibratedAndDevelopedSettingsDiffer) {
   const std::string suites[] = {"locate", "calibrate", "develop"};
   for (int i = 0; i < 3; ++i) {
     for (const CampaignCase& one : suiteCases(suites[i], false)) {
-      const SimulationOptions drawn = one.optionsFor(40);
+      const simulate::SimulationOptions drawn = one.optionsFor(40);
       fields[i].insert(
           fmt::format("{} {:.4f}", static_cast<int>(one.options.crop), drawn.field.row_spacing));
     }
@@ -67,7 +67,7 @@ TEST(Cases, StripsOfAFieldShareTheDronesView) {
 TEST(PairMaker, KeepsTheViewAndDoesNotDependOnTheOrder) {
   CampaignCase one;
   one.name = "small";
-  one.options = cropPreset(Crop::kSugarBeet20m);
+  one.options = simulate::cropPreset(simulate::Crop::kSugarBeet20m);
   one.options.field.width = one.options.field.height = 6.0;
   one.options.ugv.length = 4.0;
   one.options.ugv.width = 1.2;
@@ -98,8 +98,8 @@ TEST(Cases, SoybeanTruthLiesOnTheImportedCloud) {
   for (const CampaignCase& one : suiteCases("paper", false)) {
     if (one.source != PairSource::kSoybean) continue;
     const CampaignPair pair = maker.make(one, 3);
-    const RegistrationErrors errors =
-        evaluateTransform(pair.truth.best_affine, pair.truth, pair.moving);
+    const evaluate::RegistrationErrors errors =
+        evaluate::evaluateTransform(pair.truth.best_affine, pair.truth, pair.moving);
     EXPECT_LT(errors.rms, 0.03);
     Box3 box = boundingBox(*pair.fixed);
     std::size_t inside = 0;
@@ -121,8 +121,8 @@ TEST(Cases, AllOfTheBeetMosaicHasRoomForStrips) {
     const CampaignPair pair = maker.make(one, 2);
     const double area = static_cast<double>(pair.fixed->size()) * std::pow(one.options.uav.gsd, 2);
     EXPECT_GT(area, 300.0);
-    const RegistrationErrors errors =
-        evaluateTransform(pair.truth.best_affine, pair.truth, pair.moving);
+    const evaluate::RegistrationErrors errors =
+        evaluate::evaluateTransform(pair.truth.best_affine, pair.truth, pair.moving);
     EXPECT_LT(errors.rms, 0.05);
   }
 }

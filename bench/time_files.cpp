@@ -19,11 +19,11 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/stopwatch.hpp"
-#include "agricolmap/io/cloud_reader.hpp"
-#include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/pipeline/options.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
@@ -106,15 +106,15 @@ ProcessCost runProgram(const std::vector<std::string>& command,
 
 /// Writes a pair of about 2 and 1 million points with the largest guess errors.
 void writePair(int seed, const fs::path& folder) {
-  SimulationOptions simulation = cropPreset(Crop::kSoybean);
+  simulate::SimulationOptions simulation = simulate::cropPreset(simulate::Crop::kSoybean);
   simulation.seed = seed;
   simulation.geotag.translation = 5.0;
   simulation.geotag.heading_deg = 11.5;
   simulation.geotag.scale = 0.3;
-  const SimulatedPair pair = simulatePair(simulation);
-  writePly(folder / "uav.ply", pair.uav);
-  writePly(folder / "ugv.ply", pair.ugv);
-  writeMatrix(folder / "prior.txt", pair.prior);
+  const simulate::SimulatedPair pair = simulate::simulatePair(simulation);
+  io::writePly(folder / "uav.ply", pair.uav);
+  io::writePly(folder / "ugv.ply", pair.ugv);
+  io::writeMatrix(folder / "prior.txt", pair.prior);
 }
 
 /// The same in a process of its own: the system counts what a parent holds towards its children's
@@ -131,18 +131,18 @@ void makePair(Arguments& arguments, const fs::path& folder) {
 /// What every program of this kind must do at least: read both files and lay all points into maps.
 void readAndGrid(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads.front());
-  const RegistrationOptions options = preset("default");
+  const pipeline::RegistrationOptions options = pipeline::preset("default");
   Cloud clouds[2];
   parallelFor(2, [&](std::size_t i) {
-    clouds[i] = readCloud(i == 0 ? arguments.fixed : arguments.moving);
+    clouds[i] = io::readCloud(i == 0 ? arguments.fixed : arguments.moving);
   });
   for (const Cloud& cloud : clouds) {
-    const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), options.level);
-    Box2 box;
+    const map::Levelling level = map::levelCloud(cloud, Eigen::Affine3d::Identity(), options.level);
+    map::Box2 box;
     for (const Eigen::Vector3f& p : cloud.xyz) {
       box.extend((level.levelled_from_guess * p.cast<double>()).head<2>().eval());
     }
-    const GridMap map = makeGridMap(cloud, level.levelled_from_guess, box, options.grid);
+    const map::GridMap map = map::makeGridMap(cloud, level.levelled_from_guess, box, options.grid);
     if (map.filled == 0) throw InputError(cloud.name + ": no cell is filled");
   }
 }
@@ -199,7 +199,7 @@ void measure(Arguments arguments) {
   if (arguments.fixed.empty() != arguments.moving.empty()) {
     throw UsageError("--fixed and --moving belong together");
   }
-  StagedFile output(arguments.output, true);
+  io::StagedFile output(arguments.output, true);
   if (arguments.program.empty()) {
     arguments.program = fs::read_symlink("/proc/self/exe").parent_path() / "agricolmap";
   }
@@ -212,7 +212,7 @@ void measure(Arguments arguments) {
       text += timeRegister(arguments, folder.path(), threads, repeat);
     }
   }
-  writeText(output.path(), text);
+  io::writeText(output.path(), text);
   output.commit();
 }
 

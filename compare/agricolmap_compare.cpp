@@ -14,8 +14,8 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/pipeline/options.hpp"
 #include "page/comparison_page.hpp"
 #include "page/statistics.hpp"
@@ -53,9 +53,9 @@ std::string identityOf(const Arguments& arguments, const std::vector<DataSet>& c
   std::uint64_t hash = hashText("");
   for (const DataSet& set : allDataSets(arguments.views, arguments.quick))
     hash ^= hashText(set.pairs.text());
-  for (const std::string& name : presetNames()) {
-    RegistrationOptions options = preset(name);
-    hash ^= hashText(name + dumpYaml(optionTable(options)));
+  for (const std::string& name : pipeline::presetNames()) {
+    pipeline::RegistrationOptions options = pipeline::preset(name);
+    hash ^= hashText(name + config::dumpYaml(optionTable(options)));
   }
   const std::string real = publishedText(chosen);
   return fmt::format(
@@ -145,8 +145,8 @@ CampaignOptions campaignOf(const Arguments& arguments) {
 }
 
 void writeResult(const std::filesystem::path& path, const std::string& text) {
-  StagedFile file(path, true);
-  writeText(file.path(), text);
+  io::StagedFile file(path, true);
+  io::writeText(file.path(), text);
   file.commit();
 }
 
@@ -172,7 +172,7 @@ void writePages(const Arguments& arguments) {
     for (const Figure& figure : figures) {
       writeResult(docs / "images" / "comparison" / figure.file_name, figure.svg);
     }
-    writeResult(docs / "comparison.md", toMarkdown(document, "images/comparison"));
+    writeResult(docs / "comparison.md", config::toMarkdown(document, "images/comparison"));
   }
   fmt::print("{}\n\n{}\n", summarySentences(rows), (folder / "comparison.html").string());
 }

@@ -13,11 +13,11 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/cloud_reader.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/staged_output.hpp"
-#include "agricolmap/io/text.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/text/text.hpp"
 #include "methods/method.hpp"
 
 namespace agricolmap::compare {
@@ -39,14 +39,14 @@ struct Arguments {
 };
 
 /// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, as for `agricolmap register`.
-PriorUncertainty parsePrior(const std::string& text) {
+locate::PriorUncertainty parsePrior(const std::string& text) {
   if (text.empty()) return {};
-  if (text == "none") return PriorUncertainty::none();
+  if (text == "none") return locate::PriorUncertainty::none();
   std::vector<double> numbers;
   std::string_view rest = text;
   while (true) {
     const std::size_t comma = rest.find(',');
-    const std::optional<double> number = parseNumber(rest.substr(0, comma));
+    const std::optional<double> number = io::parseNumber(rest.substr(0, comma));
     if (!number) numbers.clear();
     if (!number) break;
     numbers.push_back(*number);
@@ -58,7 +58,7 @@ PriorUncertainty parsePrior(const std::string& text) {
         "--prior-sigma '{}': needs T_M,HEADING_DEG,SCALE_PERCENT such as 5,11.5,30, or none",
         text));
   }
-  PriorUncertainty prior;
+  locate::PriorUncertainty prior;
   prior.translation = numbers[0];
   prior.heading_deg = numbers[1];
   prior.scale = numbers[2] / 100.0;
@@ -148,21 +148,21 @@ ExitCode runMethod(const Arguments& arguments) {
                                     {&arguments.output, "-o RESULT.json"}}) {
     if (value->empty()) throw UsageError(fmt::format("{} is missing; see --help", what));
   }
-  StagedFile output(arguments.output, arguments.overwrite);
+  io::StagedFile output(arguments.output, arguments.overwrite);
   const ThreadLimit limit(arguments.threads);
-  const PriorUncertainty prior = parsePrior(arguments.prior_sigma);
+  const locate::PriorUncertainty prior = parsePrior(arguments.prior_sigma);
   const Stopwatch reading;
-  const Cloud fixed = readCloud(arguments.fixed);
-  const Cloud moving = readCloud(arguments.moving);
+  const Cloud fixed = io::readCloud(arguments.fixed);
+  const Cloud moving = io::readCloud(arguments.moving);
   const double read_s = reading.seconds();
   MethodInput input{.fixed = fixed, .moving = moving, .prior = prior};
-  if (!arguments.guess.empty()) input.guess = readMatrix(arguments.guess);
-  if (!arguments.truth.empty()) input.truth = readTransform(arguments.truth);
+  if (!arguments.guess.empty()) input.guess = io::readMatrix(arguments.guess);
+  if (!arguments.truth.empty()) input.truth = io::readTransform(arguments.truth);
   input.time_limit = arguments.time_limit;
   const Stopwatch running;
   const MethodOutcome outcome = method->run(input);
   const double run_s = running.seconds();
-  writeText(output.path(), resultJson(arguments, input, outcome, read_s, run_s).dump(2) + "\n");
+  io::writeText(output.path(), resultJson(arguments, input, outcome, read_s, run_s).dump(2) + "\n");
   output.commit();
   return outcome.fixed_from_moving && outcome.accepted ? ExitCode::kOk : ExitCode::kRejected;
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "agricolmap/io/raster_test_support.hpp"
+#include "agricolmap/io/raster/raster_test_support.hpp"
 #include "support/cli_fixture.hpp"
 
 namespace agricolmap::test {

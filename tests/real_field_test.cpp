@@ -11,7 +11,7 @@
 
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
-#include "agricolmap/io/raster_import.hpp"
+#include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
 namespace agricolmap {
@@ -56,7 +56,7 @@ Cloud thinned(const Cloud& field, Random random) {
 
 struct Strip {
   Cloud cloud;
-  Truth truth;
+  evaluate::Truth truth;
 };
 
 /// Points of `field` within `length` × `width` about `middle` (field file coordinates), three new
@@ -85,7 +85,7 @@ Strip cutStrip(const Cloud& field, const Eigen::Vector3d& middle, double length,
 TEST(RealField, FindsAStripOfRealSoybeans) {
   const auto folder = soybeanFolder();
   if (!folder) GTEST_SKIP() << "no shared data; set AGRICOLMAP_SHARED to their folder";
-  const Cloud field = importOrthoDsm(*folder / "soy_ortho.tif", *folder / "soy_dsm.tif");
+  const Cloud field = io::importOrthoDsm(*folder / "soy_ortho.tif", *folder / "soy_dsm.tif");
   const Box3 box = boundingBox(field);
   const Eigen::Vector3d middle =
       field.origin + box.centre().cast<double>() + Eigen::Vector3d(0.7, 0.2, 0.0);
@@ -101,17 +101,17 @@ TEST(RealField, FindsAStripOfRealSoybeans) {
   ASSERT_GT(strip.cloud.size(), 50000U);
 
   StageTimes times;
-  const Registration result =
-      registerClouds(thinned(field, Random(4)), strip.cloud, guess, preset("default"), times);
+  const pipeline::Registration result =
+      pipeline::registerClouds(thinned(field, Random(4)), strip.cloud, guess, pipeline::preset("default"), times);
   ASSERT_TRUE(result.has_transform);
-  const RegistrationErrors errors =
-      evaluateTransform(result.fixed_from_moving, strip.truth, strip.cloud);
+  const evaluate::RegistrationErrors errors =
+      evaluate::evaluateTransform(result.fixed_from_moving, strip.truth, strip.cloud);
   RecordProperty("rms_mm", static_cast<int>(1000.0 * errors.rms));
   EXPECT_TRUE(errors.within({})) << "RMS " << errors.rms << " m, horizontal "
                                  << errors.rms_horizontal << " m, vertical " << errors.rms_vertical
                                  << " m, e_t " << errors.translation << " m, e_r "
                                  << errors.rotation << ", e_s " << errors.scale;
-  EXPECT_EQ(result.verdict.status, Status::kAccepted);
+  EXPECT_EQ(result.verdict.status, verdict::Status::kAccepted);
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
-#include "agricolmap/evaluate/control_points_file.hpp"
-#include "agricolmap/evaluate/control_points_report.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/control_points/control_points_file.hpp"
+#include "agricolmap/control_points/control_points_report.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -21,32 +21,32 @@ struct ControlPointsArguments {
   std::string model = "scales";
 };
 
-void writeResults(const StagedOutput& output, std::span<const ControlPair> pairs,
-                  const ControlEstimate& estimate, const ControlPointsArguments& arguments) {
-  writeMatrix(output.path("truth.txt"), estimate.fixed_from_moving,
+void writeResults(const io::StagedOutput& output, std::span<const control_points::ControlPair> pairs,
+                  const control_points::ControlEstimate& estimate, const ControlPointsArguments& arguments) {
+  io::writeMatrix(output.path("truth.txt"), estimate.fixed_from_moving,
               fmt::format("from {} control pairs, model {}, moving file -> fixed file",
                           estimate.control.count, name(estimate.model)));
-  const auto json = controlPointsJson(pairs, estimate, arguments.pairs);
-  writeText(output.path("control_points.json"),
+  const auto json = control_points::controlPointsJson(pairs, estimate, arguments.pairs);
+  io::writeText(output.path("control_points.json"),
             json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
-  writeText(output.path("residuals.csv"), residualsCsv(pairs, estimate));
+  io::writeText(output.path("residuals.csv"), control_points::residualsCsv(pairs, estimate));
 }
 
 ExitCode runControlPoints(const ControlPointsArguments& arguments, const Globals& globals) {
-  std::optional<StagedOutput> output;
+  std::optional<io::StagedOutput> output;
   if (!arguments.output.empty()) output.emplace(arguments.output, globals.overwrite);
-  const std::vector<ControlPair> pairs = readControlPairs(arguments.pairs);
-  const ControlOptions options{
-      .model = arguments.model == "affine" ? ControlModel::kAffine : ControlModel::kScales,
+  const std::vector<control_points::ControlPair> pairs = control_points::readControlPairs(arguments.pairs);
+  const control_points::ControlOptions options{
+      .model = arguments.model == "affine" ? control_points::ControlModel::kAffine : control_points::ControlModel::kScales,
       .seed = globals.seed};
-  const ControlEstimate estimate = estimateFromPairs(pairs, options, arguments.pairs);
+  const control_points::ControlEstimate estimate = control_points::estimateFromPairs(pairs, options, arguments.pairs);
   if (output) {
     writeResults(*output, pairs, estimate, arguments);
     output->commit();
   }
   for (const std::string& warning : estimate.warnings) spdlog::warn("{}", warning);
   if (globals.quiet) return ExitCode::kOk;
-  fmt::print("{}", residualsTable(pairs, estimate));
+  fmt::print("{}", control_points::residualsTable(pairs, estimate));
   if (output) fmt::print("results in {}\n", arguments.output);
   return ExitCode::kOk;
 }

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "agricolmap/config/markdown.hpp"
-#include "agricolmap/io/raster_import.hpp"
+#include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/pipeline/options.hpp"
-#include "agricolmap/simulate/ortho_file.hpp"
+#include "agricolmap/simulate/ortho/ortho_file.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 #include "common.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 template <typename Options>
 void printSection(const char* verb, const char* about) {
   Options defaults;
-  fmt::print("\n## agricolmap {}\n\n{}\n\n{}", verb, about, toMarkdown(optionTable(defaults)));
+  fmt::print("\n## agricolmap {}\n\n{}\n\n{}", verb, about, config::toMarkdown(optionTable(defaults)));
 }
 
 ExitCode runDocument() {
@@ -24,13 +24,13 @@ ExitCode runDocument() {
       "Every option is a flag (`--grid.cell 0.02`) and, for `register` and `simulate`, a key of "
       "the YAML\nfile given with `--config` (`grid:` and below it `cell: 0.02`). Flags win over "
       "the file, the file over\nthe preset. `--dump-config` prints what is in force.\n");
-  printSection<RegistrationOptions>("register",
+  printSection<pipeline::RegistrationOptions>("register",
                                     "Defaults are those of `--preset default`; `--preset paper` "
                                     "and `--preset paper-literal` have "
                                     "others.");
-  printSection<SimulationOptions>(
+  printSection<simulate::SimulationOptions>(
       "simulate", "Defaults are those of the default crop; each `--crop` brings its own.");
-  printSection<OrthoFileOptions>(
+  printSection<simulate::OrthoFileOptions>(
       "simulate --ortho",
       "How an orthomosaic is read; flags only, beside `--dsm`, `--dtm`, `--window` and "
       "`--row_heading`. Of the\noptions above, `field.width` and `field.height` limit the part of "
@@ -38,7 +38,7 @@ ExitCode runDocument() {
       "rows, and `field.relief`, `field.slope`,\n`field.clods` and `field.plant_size` are used "
       "where there is no surface model. The rest of `field.*` and\n`views.weeds_pulled` do nothing "
       "and are refused as flags. `uav.gsd` is at least the mosaic's.");
-  printSection<ImportOptions>("import", "From an orthomosaic and a surface model to a cloud.");
+  printSection<io::ImportOptions>("import", "From an orthomosaic and a surface model to a cloud.");
   return ExitCode::kOk;
 }
 

@@ -7,10 +7,10 @@
 
 #include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
-#include "agricolmap/io/cloud_reader.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -24,10 +24,10 @@ struct EvaluateArguments {
   std::string output;
 };
 
-Truth readTruth(const EvaluateArguments& arguments, const Cloud& moving) {
-  Truth truth;
+evaluate::Truth readTruth(const EvaluateArguments& arguments, const Cloud& moving) {
+  evaluate::Truth truth;
   if (!arguments.truth_points.empty()) {
-    const Cloud points = readCloud(arguments.truth_points, {.colours = false});
+    const Cloud points = io::readCloud(arguments.truth_points, {.colours = false});
     if (points.size() != moving.size()) {
       throw InputError(
           fmt::format("{}: has {} points, {} has {}; the truth needs one per moving "
@@ -38,12 +38,12 @@ Truth readTruth(const EvaluateArguments& arguments, const Cloud& moving) {
     for (std::size_t i = 0; i < points.size(); ++i) truth.points.push_back(points.filePoint(i));
     truth.best_affine = fitAffine(moving, truth.points);
   } else {
-    truth.best_affine = readTransform(arguments.truth);
+    truth.best_affine = io::readTransform(arguments.truth);
   }
   return truth;
 }
 
-nlohmann::ordered_json toJson(const RegistrationErrors& errors) {
+nlohmann::ordered_json toJson(const evaluate::RegistrationErrors& errors) {
   return {{"success", errors.within({})},
           {"rms_m", errors.rms},
           {"rms_horizontal_m", errors.rms_horizontal},
@@ -59,13 +59,13 @@ ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals)
   if (arguments.truth.empty() == arguments.truth_points.empty()) {
     throw UsageError("evaluate needs either --truth or --truth-points");
   }
-  const Eigen::Affine3d estimate = readMatrix(arguments.transform);
-  const Cloud moving = readCloud(arguments.moving, {.colours = false});
-  const RegistrationErrors errors =
-      evaluateTransform(estimate, readTruth(arguments, moving), moving);
+  const Eigen::Affine3d estimate = io::readMatrix(arguments.transform);
+  const Cloud moving = io::readCloud(arguments.moving, {.colours = false});
+  const evaluate::RegistrationErrors errors =
+      evaluate::evaluateTransform(estimate, readTruth(arguments, moving), moving);
   if (!arguments.output.empty()) {
-    StagedFile output(arguments.output, globals.overwrite);
-    writeText(output.path(), toJson(errors).dump(2) + "\n");
+    io::StagedFile output(arguments.output, globals.overwrite);
+    io::writeText(output.path(), config::toJson(errors).dump(2) + "\n");
     output.commit();
   }
   if (globals.quiet) return ExitCode::kOk;

@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/raster_import.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/raster/raster_import.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 
@@ -20,13 +20,13 @@ struct ImportArguments {
 };
 
 ExitCode runImport(const ImportArguments& arguments, const Globals& globals) {
-  ImportOptions options;
+  io::ImportOptions options;
   arguments.flags.apply(optionTable(options));
-  StagedFile output(arguments.output, globals.overwrite);
+  io::StagedFile output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step("import");
-  const Cloud cloud = importOrthoDsm(arguments.ortho, arguments.dsm, options);
-  writePly(output.path(), cloud);
+  const Cloud cloud = io::importOrthoDsm(arguments.ortho, arguments.dsm, options);
+  io::writePly(output.path(), cloud);
   output.commit();
   if (!globals.quiet) {
     fmt::print("{}: {} points, {} pixels without a height left out\n", arguments.output,
@@ -46,7 +46,7 @@ CommandSlot addImportCommand(CLI::App& app, const Globals& globals) {
   command->add_option("DSM", arguments->dsm, "Surface model: GeoTIFF, same coordinate system")
       ->required();
   command->add_option("-o,--output", arguments->output, "PLY to write")->required();
-  ImportOptions defaults;
+  io::ImportOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the import");
   return {command, [arguments, &globals] { return runImport(*arguments, globals); }};
 }

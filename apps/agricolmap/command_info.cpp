@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "agricolmap/core/stopwatch.hpp"
-#include "agricolmap/io/cloud_reader.hpp"
-#include "agricolmap/io/offset_file.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/text/offset_file.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -13,7 +13,7 @@ namespace {
 
 ExitCode runInfo(const std::string& path) {
   const Stopwatch watch;
-  const Cloud cloud = readCloud(path);
+  const Cloud cloud = io::readCloud(path);
   const double seconds = watch.seconds();
   const Box3 box = boundingBox(cloud);
   const Eigen::Vector3d low = cloud.origin + box.min.cast<double>();
@@ -31,7 +31,7 @@ ExitCode runInfo(const std::string& path) {
     fmt::print("density    {:.0f} points per m2 of the bounding box\n",
                static_cast<double>(cloud.size()) / area);
   }
-  fmt::print("offset.xyz {}\n", readOffsetBeside(path) ? "found beside the cloud" : "none");
+  fmt::print("offset.xyz {}\n", io::readOffsetBeside(path) ? "found beside the cloud" : "none");
   fmt::print("read in    {:.3f} s\n", seconds);
   return ExitCode::kOk;
 }

@@ -10,13 +10,13 @@
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/cloud_reader.hpp"
-#include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/staged_output.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/pipeline/registration.hpp"
-#include "agricolmap/report/pictures.hpp"
-#include "agricolmap/report/registration_json.hpp"
+#include "agricolmap/report/pictures/pictures.hpp"
+#include "agricolmap/report/json/registration_json.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 
@@ -39,10 +39,10 @@ struct RegisterArguments {
 };
 
 /// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, each value within its option's limits.
-void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const OptionTable& table) {
+void applyPriorSigma(const std::string& text, locate::PriorUncertainty& prior, const OptionTable& table) {
   if (text == "none") {
     const bool scale_unknown = prior.scale_unknown;
-    prior = PriorUncertainty::none();
+    prior = locate::PriorUncertainty::none();
     prior.scale_unknown = scale_unknown;
     return;
   }
@@ -67,12 +67,12 @@ void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const Opt
 }
 
 /// Defaults, then the preset, then the configuration file, then flags.
-RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Globals& globals) {
-  RegistrationOptions options = preset(arguments.preset);
+pipeline::RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Globals& globals) {
+  pipeline::RegistrationOptions options = pipeline::preset(arguments.preset);
   options.flow.seed = globals.seed;
   options.affine.seed = globals.seed;
   OptionTable table = optionTable(options);
-  if (!arguments.config.empty()) loadYaml(arguments.config, table);
+  if (!arguments.config.empty()) config::loadYaml(arguments.config, table);
   if (!arguments.prior_sigma.empty()) applyPriorSigma(arguments.prior_sigma, options.prior, table);
   if (arguments.scale_unknown) options.prior.scale_unknown = true;
   arguments.flags.apply(table);
@@ -88,12 +88,12 @@ LoadedPair load(const RegisterArguments& arguments) {
   LoadedPair pair;
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
-    (i == 0 ? pair.fixed : pair.moving) = readCloud(i == 0 ? arguments.fixed : arguments.moving);
+    (i == 0 ? pair.fixed : pair.moving) = io::readCloud(i == 0 ? arguments.fixed : arguments.moving);
   });
   return pair;
 }
 
-void printSummary(const Registration& result, const std::string& directory) {
+void printSummary(const pipeline::Registration& result, const std::string& directory) {
   fmt::print("{}\n", toString(result.verdict.status));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
   if (result.has_transform) {
@@ -131,72 +131,72 @@ std::string commandText(const std::vector<std::string>& words) {
   return text;
 }
 
-RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
+report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
                                   const OptionTable& table) {
-  RegistrationReportInfo info;
+  report::RegistrationReportInfo info;
   info.version = AGRICOLMAP_VERSION;
   info.seed = static_cast<std::uint64_t>(globals.seed);
   info.threads = globals.threads;
   info.command_line = commandText(globals.command_line);
   info.preset = arguments.preset;
-  info.options = toJson(table);
+  info.options = config::toJson(table);
   return info;
 }
 
 /// Fills `output` with everything but the report.
 std::vector<std::string> writeResults(const RegisterArguments& arguments,
-                                      const RegistrationOptions& options, const LoadedPair& pair,
-                                      const Registration& result, const StagedOutput& output,
+                                      const pipeline::RegistrationOptions& options, const LoadedPair& pair,
+                                      const pipeline::Registration& result, const io::StagedOutput& output,
                                       StageTimes& times) {
   const bool keep = result.has_transform &&
-                    (result.verdict.status == Status::kAccepted || arguments.keep_rejected);
+                    (result.verdict.status == verdict::Status::kAccepted || arguments.keep_rejected);
   if (keep) {
     times.run("write", [&] {
-      writeMatrix(output.path("transform.txt"), result.fixed_from_moving);
-      writePly(output.path("aligned.ply"), pair.moving, result.fixed_from_moving);
+      io::writeMatrix(output.path("transform.txt"), result.fixed_from_moving);
+      io::writePly(output.path("aligned.ply"), pair.moving, result.fixed_from_moving);
     });
   }
   if (arguments.no_pictures) return {};
   return times.run("pictures", [&] {
-    return writePictures(output.folder(), result,
+    return report::writePictures(output.folder(), result,
                          {arguments.fixed, arguments.moving, options.evidence});
   });
 }
 
 ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals) {
-  RegistrationOptions options = chosenOptions(arguments, globals);
+  pipeline::RegistrationOptions options = chosenOptions(arguments, globals);
   const OptionTable table = optionTable(options);
   if (arguments.dump_config) {
-    std::cout << dumpYaml(table);
+    std::cout << config::dumpYaml(table);
     return ExitCode::kOk;
   }
   if (arguments.fixed.empty() || arguments.moving.empty() || arguments.output.empty()) {
     throw UsageError("register needs FIXED, MOVING and -o DIR; see agricolmap register --help");
   }
   // First of all, so that the work does not end at a folder that cannot be written.
-  StagedOutput output(arguments.output, globals.overwrite);
+  io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   StageTimes times([&](std::string_view stage) { progress.step(stage); });
-  RegistrationReportInfo info = reportInfo(arguments, globals, table);
+  report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
   info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
   const LoadedPair pair = times.run("read", [&] { return load(arguments); });
   warnOfDropped(pair.fixed);
   warnOfDropped(pair.moving);
-  const Registration result = registerClouds(pair.fixed, pair.moving, info.prior, options, times);
+  const pipeline::Registration result = pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, times);
   info.pictures = writeResults(arguments, options, pair, result, output, times);
-  writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result, times,
+  report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result, times,
                         info);
   throwIfInterrupted();
-  std::vector<std::string> stale = pictureNames();
+  std::vector<std::string> stale = report::pictureNames();
   stale.insert(stale.end(), {"transform.txt", "aligned.ply"});
   output.commit(stale);
   if (!globals.quiet) printSummary(result, arguments.output);
   switch (result.verdict.status) {
-    case Status::kAccepted:
+    case verdict::Status::kAccepted:
       return ExitCode::kOk;
-    case Status::kAmbiguous:
+    case verdict::Status::kAmbiguous:
       return ExitCode::kAmbiguous;
-    case Status::kRejected:
+    case verdict::Status::kRejected:
       break;
   }
   return ExitCode::kRejected;
@@ -228,7 +228,7 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   command->add_flag("--keep-rejected", arguments->keep_rejected,
                     "Write transform.txt and aligned.ply of a rejected registration, too");
   command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG pictures");
-  RegistrationOptions defaults;
+  pipeline::RegistrationOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the pipeline");
   return {command, [arguments, &globals] { return runRegister(*arguments, globals); }};
 }

@@ -6,12 +6,12 @@
 
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
-#include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/file_sink.hpp"
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/offset_file.hpp"
-#include "agricolmap/io/staged_output.hpp"
-#include "agricolmap/report/pair_picture.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/text/offset_file.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/report/pictures/pair_picture.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
@@ -32,21 +32,21 @@ struct SimulateArguments {
 };
 
 /// The crop's preset, then the configuration file, then flags; the crop may come from either.
-SimulationOptions chosenOptions(const SimulateArguments& arguments, const Globals& globals) {
-  const auto fill = [&](SimulationOptions& options) {
+simulate::SimulationOptions chosenOptions(const SimulateArguments& arguments, const Globals& globals) {
+  const auto fill = [&](simulate::SimulationOptions& options) {
     OptionTable table = optionTable(options);
-    if (!arguments.config.empty()) loadYaml(arguments.config, table);
+    if (!arguments.config.empty()) config::loadYaml(arguments.config, table);
     arguments.flags.apply(table);
   };
-  SimulationOptions first;
+  simulate::SimulationOptions first;
   fill(first);
-  SimulationOptions options = cropPreset(first.crop);
+  simulate::SimulationOptions options = simulate::cropPreset(first.crop);
   options.seed = globals.seed;
   fill(options);
   return options;
 }
 
-Cloud truthCloud(const SimulatedPair& pair) {
+Cloud truthCloud(const simulate::SimulatedPair& pair) {
   Cloud cloud;
   cloud.name = "truth";
   cloud.origin = pair.uav.origin;
@@ -57,48 +57,48 @@ Cloud truthCloud(const SimulatedPair& pair) {
   return cloud;
 }
 
-void writeClouds(const StagedOutput& output, const SimulatedPair& pair) {
-  writePly(output.path("uav/point_cloud.ply"), pair.uav);
-  writePly(output.path("ugv/point_cloud.ply"), pair.ugv);
+void writeClouds(const io::StagedOutput& output, const simulate::SimulatedPair& pair) {
+  io::writePly(output.path("uav/point_cloud.ply"), pair.uav);
+  io::writePly(output.path("ugv/point_cloud.ply"), pair.ugv);
   // The UAV's file is the world; the UGV's geotag is what the initial guess knows.
-  writeOffset(output.path("uav/offset.xyz"), Eigen::Affine3d::Identity());
-  writeOffset(output.path("ugv/offset.xyz"), pair.prior);
-  writeMatrix(output.path("prior.txt"), pair.prior, "initial guess, UGV file -> UAV file");
-  writeMatrix(output.path("truth.txt"), pair.best_affine,
+  io::writeOffset(output.path("uav/offset.xyz"), Eigen::Affine3d::Identity());
+  io::writeOffset(output.path("ugv/offset.xyz"), pair.prior);
+  io::writeMatrix(output.path("prior.txt"), pair.prior, "initial guess, UGV file -> UAV file");
+  io::writeMatrix(output.path("truth.txt"), pair.best_affine,
               "best affine, UGV file -> UAV file; not exact where the strip drifts");
-  writePly(output.path("truth_points.ply"), truthCloud(pair));
+  io::writePly(output.path("truth_points.ply"), truthCloud(pair));
 }
 
-void writePicture(const StagedOutput& output, const SimulatedPair& pair, const std::string& field,
+void writePicture(const io::StagedOutput& output, const simulate::SimulatedPair& pair, const std::string& field,
                   int seed) {
-  PairPictureInfo info;
+  report::PairPictureInfo info;
   info.title = fmt::format("Simulated pair: {}, seed {}", field, seed);
   if (!pair.overlaps) info.title += ", of different fields";
   info.same_field = pair.overlaps;
-  writePairPicture(output.path(kPicture), pair.uav, pair.ugv, pair.best_affine, info);
+  report::writePairPicture(output.path(kPicture), pair.uav, pair.ugv, pair.best_affine, info);
 }
 
 ExitCode runSimulate(SimulateArguments& arguments, const Globals& globals) {
-  SimulationOptions options = chosenOptions(arguments, globals);
+  simulate::SimulationOptions options = chosenOptions(arguments, globals);
   const bool from_ortho = arguments.ortho.given(arguments.flags);
   const OptionTable table = optionTable(options);
   if (arguments.dump_config) {
-    fmt::print("{}", dumpYaml(table));
+    fmt::print("{}", config::dumpYaml(table));
     return ExitCode::kOk;
   }
   if (arguments.output.empty()) throw UsageError("simulate needs -o DIR");
-  StagedOutput output(arguments.output, globals.overwrite);
+  io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step("simulate");
-  const SimulatedPair pair = from_ortho ? arguments.ortho.simulate(options) : simulatePair(options);
+  const simulate::SimulatedPair pair = from_ortho ? arguments.ortho.simulate(options) : simulate::simulatePair(options);
   progress.step("write");
   writeClouds(output, pair);
-  writeText(output.path("simulation.yaml"),
-            (from_ortho ? arguments.ortho.provenance() : "") + dumpYaml(table));
+  io::writeText(output.path("simulation.yaml"),
+            (from_ortho ? arguments.ortho.provenance() : "") + config::dumpYaml(table));
   if (!arguments.no_pictures) {
     progress.step("picture");
     writePicture(output, pair,
-                 from_ortho ? arguments.ortho.fileName() : optionText(*table.find("crop")),
+                 from_ortho ? arguments.ortho.fileName() : config::optionText(*table.find("crop")),
                  options.seed);
   }
   output.commit({kPicture});
@@ -123,7 +123,7 @@ CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals) {
                     "Print all options in force as YAML and stop");
   command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG picture");
   arguments->ortho.addTo(*command);
-  SimulationOptions defaults;
+  simulate::SimulationOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the simulator", {"seed"});
   return {command, [arguments, &globals] { return runSimulate(*arguments, globals); }};
 }

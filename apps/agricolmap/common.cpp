@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/offset_file.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/text/offset_file.hpp"
 
 namespace agricolmap {
 
@@ -30,10 +30,10 @@ Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
                              std::string& source) {
   if (!prior_file.empty()) {
     source = prior_file;
-    return readMatrix(prior_file);
+    return io::readMatrix(prior_file);
   }
-  const auto world_from_fixed = readOffsetBeside(fixed);
-  const auto world_from_moving = readOffsetBeside(moving);
+  const auto world_from_fixed = io::readOffsetBeside(fixed);
+  const auto world_from_moving = io::readOffsetBeside(moving);
   if (!world_from_fixed && !world_from_moving) {
     source = "coordinates as they stand";
     return Eigen::Affine3d::Identity();

@@ -10,8 +10,8 @@ namespace agricolmap {
 namespace {
 
 std::string helpOf(const OptionField& field) {
-  return fmt::format("{} [{}{}{}; {}]", field.help, optionText(field),
-                     field.unit.empty() ? "" : " ", field.unit, limitsText(field));
+  return fmt::format("{} [{}{}{}; {}]", field.help, config::optionText(field),
+                     field.unit.empty() ? "" : " ", field.unit, config::limitsText(field));
 }
 
 }  // namespace

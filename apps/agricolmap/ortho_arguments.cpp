@@ -10,7 +10,7 @@
 
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/simulate/row_heading.hpp"
+#include "agricolmap/simulate/ortho/row_heading.hpp"
 
 namespace agricolmap {
 namespace {
@@ -49,7 +49,7 @@ void OrthoArguments::addTo(CLI::App& command) {
       ->expected(1)
       ->check(CLI::Range(-360.0, 360.0))
       ->group(kGroup);
-  OrthoFileOptions defaults;
+  simulate::OrthoFileOptions defaults;
   flags_.addTo(command, optionTable(defaults), kGroup);
 }
 
@@ -75,17 +75,17 @@ bool OrthoArguments::given(const OptionFlags& flags) const {
   return true;
 }
 
-PixelWindow OrthoArguments::windowFor(const SimulationOptions& options) const {
+io::PixelWindow OrthoArguments::windowFor(const simulate::SimulationOptions& options) const {
   if (!window_.empty()) return {window_[0], window_[1], window_[2], window_[3]};
-  return chooseWindow(ortho_, file_options_, options.field.width, options.field.height,
+  return simulate::chooseWindow(ortho_, file_options_, options.field.width, options.field.height,
                       static_cast<std::uint64_t>(options.seed));
 }
 
-SimulatedPair OrthoArguments::simulate(SimulationOptions& options) {
+simulate::SimulatedPair OrthoArguments::simulate(simulate::SimulationOptions& options) {
   flags_.apply(optionTable(file_options_));
-  const PixelWindow window = windowFor(options);
+  const io::PixelWindow window = windowFor(options);
   window_ = {window.col, window.row, window.cols, window.rows};
-  OrthoField field = readOrtho({ortho_, dsm_, dtm_}, file_options_, window);
+  simulate::OrthoField field = simulate::readOrtho({ortho_, dsm_, dtm_}, file_options_, window);
   file_options_.gsd = field.gsd;
   spdlog::info("{}: {:.1f} x {:.1f} m with pixels of {:.5g} m: --window {}", ortho_,
                field.gsd * field.colour.cols(), field.gsd * field.colour.rows(), field.gsd,
@@ -97,7 +97,7 @@ SimulatedPair OrthoArguments::simulate(SimulationOptions& options) {
     options.field.random_row_heading = false;
     // To hundredths, as it is reported, so that the report makes the same pair.
     options.field.row_heading_deg =
-        std::round(100.0 * findRowHeading(field) / kDegree) / 100.0 + 0.0;
+        std::round(100.0 * simulate::findRowHeading(field) / kDegree) / 100.0 + 0.0;
     spdlog::info("{}: the rows run at {:.2f} degrees", ortho_, options.field.row_heading_deg);
   }
   field.row_heading = options.field.row_heading_deg * kDegree;
@@ -106,7 +106,7 @@ SimulatedPair OrthoArguments::simulate(SimulationOptions& options) {
                  options.uav.gsd);
     options.uav.gsd = field.gsd;
   }
-  return simulateFromOrtho(field, options);
+  return simulate::simulateFromOrtho(field, options);
 }
 
 std::string OrthoArguments::provenance() const {
@@ -114,10 +114,10 @@ std::string OrthoArguments::provenance() const {
   if (!dsm_.empty()) text += fmt::format(" --dsm {}", dsm_);
   if (!dtm_.empty()) text += fmt::format(" --dtm {}", dtm_);
   text += fmt::format(" --window {}", fmt::join(window_, " "));
-  OrthoFileOptions shown = file_options_;
+  simulate::OrthoFileOptions shown = file_options_;
   const OptionTable table = optionTable(shown);
   for (const OptionField& field : table.fields()) {
-    text += fmt::format(" --{} {}", field.path, optionText(field));
+    text += fmt::format(" --{} {}", field.path, config::optionText(field));
   }
   std::replace(text.begin(), text.end(), '\n', ' ');  // of a file's name: still a comment
   return text + "\n# with the options below; heights and plants are the mosaic's, not field.*\n";

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/simulate/ortho_file.hpp"
+#include "agricolmap/simulate/ortho/ortho_file.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 #include "option_flags.hpp"
 
@@ -19,14 +19,14 @@ class OrthoArguments {
   /// sense with one, or that make none with one; `flags` are those of the simulator.
   bool given(const OptionFlags& flags) const;
   /// Reads the mosaic and simulates. Puts what was found or decided into `options`.
-  SimulatedPair simulate(SimulationOptions& options);
+  simulate::SimulatedPair simulate(simulate::SimulationOptions& options);
   /// The mosaic's, without its folder.
   std::string fileName() const { return std::filesystem::path(ortho_).filename(); }
   /// Comment lines that say what the pair was made from; after simulate().
   std::string provenance() const;
 
  private:
-  PixelWindow windowFor(const SimulationOptions& options) const;
+  io::PixelWindow windowFor(const simulate::SimulationOptions& options) const;
 
   std::string ortho_;
   std::string dsm_;
@@ -34,7 +34,7 @@ class OrthoArguments {
   std::vector<int> window_;
   std::vector<double> row_heading_;
   OptionFlags flags_;
-  OrthoFileOptions file_options_;
+  simulate::OrthoFileOptions file_options_;
 };
 
 }  // namespace agricolmap

@@ -12,8 +12,8 @@
 #include <tuple>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/matrix_file.hpp"
-#include "agricolmap/io/offset_file.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/text/offset_file.hpp"
 
 namespace agricolmap {
 namespace {
@@ -99,8 +99,8 @@ struct CropFolder {
 };
 
 /// Calls `visit(entry, depth)` for what lies in `dir`, depth from 0; it says whether to go deeper.
-template <typename Visit>
-void walk(const fs::path& dir, const Visit& visit) {
+template <typename simulate::Visit>
+void walk(const fs::path& dir, const simulate::Visit& visit) {
   std::error_code error;
   fs::recursive_directory_iterator it(dir, fs::directory_options::follow_directory_symlink, error);
   for (; !error && it != fs::end(it); it.increment(error)) {
@@ -255,12 +255,12 @@ void addPairs(const fs::path& dir, const fs::path& folder, const CropFolder& cro
     pair.row = row.filename().string();
     pair.fixed_cloud = drone / kCloud;
     pair.moving_cloud = row / kCloud;
-    pair.world_from_fixed = readOffsetBeside(pair.fixed_cloud);
-    pair.world_from_moving = readOffsetBeside(pair.moving_cloud);
+    pair.world_from_fixed = io::readOffsetBeside(pair.fixed_cloud);
+    pair.world_from_moving = io::readOffsetBeside(pair.moving_cloud);
     pair.truth_file = truthOf(row, crop, truths_above);
     if (pair.truth_file) {
       idle_truths.erase(*pair.truth_file);
-      pair.true_fixed_from_moving = readTransform(*pair.truth_file);
+      pair.true_fixed_from_moving = io::readTransform(*pair.truth_file);
     }
     all_have_truth = all_have_truth && pair.truth_file.has_value();
     pairs.push_back(std::move(pair));

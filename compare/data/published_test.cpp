@@ -5,10 +5,10 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
-#include "agricolmap/io/cloud_reader.hpp"
-#include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/number_file.hpp"
-#include "agricolmap/io/offset_file.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/text/number_file.hpp"
+#include "agricolmap/io/text/offset_file.hpp"
 #include "agricolmap/io/test_support.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
@@ -41,24 +41,24 @@ void fails(const Folder& folder, std::initializer_list<const char*> parts) {
 std::string publishedTruth(const Eigen::Affine3d& affine) {
   std::string text;
   for (Eigen::Index row = 0; row < 3; ++row) {
-    for (Eigen::Index col = 0; col < 4; ++col) text += exactText(affine(row, col)) + ' ';
+    for (Eigen::Index col = 0; col < 4; ++col) text += io::exactText(affine(row, col)) + ' ';
   }
   return text + "0.02 -0.03\n";
 }
 
 TEST(Published, ASimulatedPairInThatLayout) {
-  SimulationOptions options = cropPreset(Crop::kSugarBeet10m);
+  simulate::SimulationOptions options = simulate::cropPreset(simulate::Crop::kSugarBeet10m);
   options.field.width = options.field.height = 6.0;
   options.ugv.length = 3.0;
   options.seed = 7;
-  const SimulatedPair made = simulatePair(options);
+  const simulate::SimulatedPair made = simulate::simulatePair(options);
   const Folder folder;
   fs::create_directories(folder / "Sugar Beet 10m/UAV");
   fs::create_directories(folder / "Sugar Beet 10m/UGV_row1");
-  writePly(folder / "Sugar Beet 10m/UAV/point_cloud.ply", made.uav);
-  writePly(folder / "Sugar Beet 10m/UGV_row1/point_cloud.ply", made.ugv);
-  writeOffset(folder / "Sugar Beet 10m/UAV/offset.xyz", Eigen::Affine3d::Identity());
-  writeOffset(folder / "Sugar Beet 10m/UGV_row1/offset.xyz", made.prior);
+  io::writePly(folder / "Sugar Beet 10m/UAV/point_cloud.ply", made.uav);
+  io::writePly(folder / "Sugar Beet 10m/UGV_row1/point_cloud.ply", made.ugv);
+  io::writeOffset(folder / "Sugar Beet 10m/UAV/offset.xyz", Eigen::Affine3d::Identity());
+  io::writeOffset(folder / "Sugar Beet 10m/UGV_row1/offset.xyz", made.prior);
   folder.file("Sugar Beet 10m/UGV_row1/affine_ground_truth.txt", publishedTruth(made.best_affine));
 
   const std::vector<PublishedPair> pairs = findPublishedPairs(folder.path());
@@ -69,10 +69,10 @@ TEST(Published, ASimulatedPairInThatLayout) {
   EXPECT_TRUE((*pairs[0].world_from_moving).isApprox(made.prior, 1e-9));
   ASSERT_TRUE(pairs[0].true_fixed_from_moving);
   // The truth lays the row's cloud, as read, where it belongs.
-  const Cloud moving = readCloud(pairs[0].moving_cloud);
-  EXPECT_EQ(readCloud(pairs[0].fixed_cloud).size(), made.uav.size());
-  const RegistrationErrors errors =
-      evaluateTransform(*pairs[0].true_fixed_from_moving, {made.best_affine, made.truth}, moving);
+  const Cloud moving = io::readCloud(pairs[0].moving_cloud);
+  EXPECT_EQ(io::readCloud(pairs[0].fixed_cloud).size(), made.uav.size());
+  const evaluate::RegistrationErrors errors =
+      evaluate::evaluateTransform(*pairs[0].true_fixed_from_moving, {made.best_affine, made.truth}, moving);
   EXPECT_LT(errors.rms, 0.03);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 class CpdAffine : public Method {
  public:
-  explicit CpdAffine(const CpdOptions& options) : options_(options) {}
+  explicit CpdAffine(const paper::CpdOptions& options) : options_(options) {}
   std::string name() const override { return "cpd-affine"; }
   std::string about() const override {
     return "affine coherent point drift on the vegetation points";
@@ -21,25 +21,25 @@ class CpdAffine : public Method {
     const auto most = static_cast<std::size_t>(options_.max_points);
     const PeerPoints points = makePeerPoints(maps, maps.space.uncertainty.translation + 1.0,
                                              4 * most, most, outcome.times);
-    const CpdResult result = outcome.times.run("cpd", [&] {
-      return refineByCpd(points.fixed, points.moving, {}, options_, maps.space.scale_axes);
+    const paper::CpdResult result = outcome.times.run("cpd", [&] {
+      return paper::refineByCpd(points.fixed, points.moving, {}, options_, maps.space.scale_axes);
     });
     if (!result.usable()) {
       outcome.why = fmt::format("no registration: {}", describe(result.status));
       return;
     }
-    outcome.accepted = result.status == CpdStatus::kConverged;
+    outcome.accepted = result.status == paper::CpdStatus::kConverged;
     if (!outcome.accepted) outcome.why = describe(result.status);
     setPlanePose(maps, input, result.pose.plane, outcome);
   }
 
  private:
-  CpdOptions options_;
+  paper::CpdOptions options_;
 };
 
 }  // namespace
 
-std::unique_ptr<Method> makeCpdAffine(const CpdOptions& options) {
+std::unique_ptr<Method> makeCpdAffine(const paper::CpdOptions& options) {
   return std::make_unique<CpdAffine>(options);
 }
 

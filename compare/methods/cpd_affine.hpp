@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "agricolmap/6_refine/cpd.hpp"
+#include "agricolmap/paper/cpd/cpd.hpp"
 #include "methods/method.hpp"
 
 namespace agricolmap::compare {
@@ -11,14 +11,14 @@ namespace agricolmap::compare {
 /// The product's CPD with what makes it a refinement, and not a registration, switched off.
 /// 6_refine/cpd.hpp says in what it differs from the article: its roles of the clouds, the cut-off
 /// kernel and the speed, which a strip in a larger map needs.
-inline CpdOptions peerCpdOptions() {
-  CpdOptions options;
-  options.model = CpdModel::kAffine;  // the article's affine variant
+inline paper::CpdOptions peerCpdOptions() {
+  paper::CpdOptions options;
+  options.model = paper::CpdModel::kAffine;  // the article's affine variant
   options.start_weight = 0.0;         // the article knows no pull towards the start
   options.max_motion = 20.0;          // nor a limit to the motion
   return options;
 }
 
-std::unique_ptr<Method> makeCpdAffine(const CpdOptions& options = peerCpdOptions());
+std::unique_ptr<Method> makeCpdAffine(const paper::CpdOptions& options = peerCpdOptions());
 
 }  // namespace agricolmap::compare

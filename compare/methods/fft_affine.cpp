@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "agricolmap/4_associate/correlate/hypotheses.hpp"
+#include "agricolmap/locate/hypotheses.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "methods/peer_maps.hpp"
@@ -20,7 +20,7 @@ constexpr std::array<int, 2> kCoarse = {6, 3};
 constexpr std::array<int, 2> kFine = {2, 1};
 
 /// Half of what the seen cells extend to from `centre` along each column of `axes` [m].
-Eigen::Vector2d halfExtent(const SignalMap& map, const Eigen::Matrix2d& axes,
+Eigen::Vector2d halfExtent(const map::SignalMap& map, const Eigen::Matrix2d& axes,
                            const Eigen::Vector2d& centre) {
   Eigen::Vector2d half = Eigen::Vector2d::Constant(map.frame.cell);
   for (int r = 0; r < map.frame.rows; ++r) {
@@ -46,7 +46,7 @@ std::vector<double> stepsOver(double limit, double step) {
 /// A piece of nothing, as large as the moving map under a linear map; anchored at `centre`.
 PlainCorrelation::Piece blankPiece(const GridFrame& frame, const Eigen::Vector2d& centre,
                                    const Eigen::Matrix2d& linear) {
-  Box2 box;
+  map::Box2 box;
   for (const double row : {-0.5, frame.rows - 0.5}) {
     for (const double col : {-0.5, frame.cols - 0.5}) {
       box.extend((linear * (frame.centre(row, col) - centre) / frame.cell).eval());
@@ -63,14 +63,14 @@ PlainCorrelation::Piece blankPiece(const GridFrame& frame, const Eigen::Vector2d
 }
 
 /// The moving map under a linear map, at its own cell size; anchored at `centre`.
-PlainCorrelation::Piece pieceOf(const SignalMap& moving, const Eigen::Vector2d& centre,
+PlainCorrelation::Piece pieceOf(const map::SignalMap& moving, const Eigen::Vector2d& centre,
                                 const Eigen::Matrix2d& linear) {
   PlainCorrelation::Piece piece = blankPiece(moving.frame, centre, linear);
   const Eigen::Matrix2d back = linear.inverse() * moving.frame.cell;
   for (int r = 0; r < piece.value.rows(); ++r) {
     for (int c = 0; c < piece.value.cols(); ++c) {
       const Eigen::Vector2d offset(piece.first_col + c, piece.first_row + r);
-      const SignalSample sample = sampleSignal(moving, centre + back * offset);
+      const map::SignalSample sample = map::sampleSignal(moving, centre + back * offset);
       if (sample.weight <= 0.0F) continue;
       piece.value(r, c) = sample.value[0];
       piece.seen(r, c) = 1.0F;
@@ -79,7 +79,7 @@ PlainCorrelation::Piece pieceOf(const SignalMap& moving, const Eigen::Vector2d& 
   return piece;
 }
 
-struct Candidate {
+struct locate::Candidate {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
   double score = 0.0;
 };
@@ -106,7 +106,7 @@ class FftAffine : public Method {
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const PeerMaps maps = makePeerMaps(input, outcome.times);
-    const std::vector<Candidate> candidates =
+    const std::vector<locate::Candidate> candidates =
         outcome.times.run("correlate", [&] { return search(maps); });
     const std::optional<Eigen::Affine2d> pose =
         outcome.times.run("refine", [&] { return refine(maps, candidates); });
@@ -121,24 +121,24 @@ class FftAffine : public Method {
 
  private:
   /// Best placements, best first.
-  std::vector<Candidate> search(const PeerMaps& maps) const {
-    const SignalMap fixed = makeSignalMap(maps.fixed, options_.factor, {});
-    const SignalMap moving = makeSignalMap(maps.moving, options_.factor, {});
-    const std::vector<Hypothesis> all = hypothesesOver(maps, moving);
+  std::vector<locate::Candidate> search(const PeerMaps& maps) const {
+    const map::SignalMap fixed = map::makeSignalMap(maps.fixed, options_.factor, {});
+    const map::SignalMap moving = map::makeSignalMap(maps.moving, options_.factor, {});
+    const std::vector<locate::Hypothesis> all = hypothesesOver(maps, moving);
     int most_rows = 1;
     int most_cols = 1;
     const Eigen::Vector2d& centre = maps.space.centre;
-    for (const Hypothesis& one : all) {
+    for (const locate::Hypothesis& one : all) {
       const PlainCorrelation::Piece piece =
-          blankPiece(moving.frame, centre, linearOf(one, maps.space.scale_axes));
+          blankPiece(moving.frame, centre, locate::linearOf(one, maps.space.scale_axes));
       most_rows = std::max(most_rows, piece.value.rows());
       most_cols = std::max(most_cols, piece.value.cols());
     }
     const PlainCorrelation correlation(fixed, most_rows, most_cols, options_.least_energy);
-    std::vector<Candidate> found(all.size());
+    std::vector<locate::Candidate> found(all.size());
     parallelFor(all.size(), [&](std::size_t i) {
-      Candidate& candidate = found[i];
-      candidate.pose.linear() = linearOf(all[i], maps.space.scale_axes);
+      locate::Candidate& candidate = found[i];
+      candidate.pose.linear() = locate::linearOf(all[i], maps.space.scale_axes);
       const PlainCorrelation::Peak peak =
           correlation.best(pieceOf(moving, centre, candidate.pose.linear()), centre,
                            maps.space.uncertainty.translation + moving.frame.cell);
@@ -148,13 +148,13 @@ class FftAffine : public Method {
     return distinct(std::move(found), moving.frame);
   }
 
-  std::vector<Hypothesis> hypothesesOver(const PeerMaps& maps, const SignalMap& moving) const {
-    const PriorUncertainty& prior = maps.space.uncertainty;
+  std::vector<locate::Hypothesis> hypothesesOver(const PeerMaps& maps, const map::SignalMap& moving) const {
+    const locate::PriorUncertainty& prior = maps.space.uncertainty;
     const Eigen::Vector2d half = halfExtent(moving, maps.space.scale_axes, maps.space.centre);
     const double shift = options_.step * moving.frame.cell;
     const double heading = prior.heading_deg * std::numbers::pi / 180.0;
-    const double scale = logScaleLimit(prior);
-    std::vector<Hypothesis> all;
+    const double scale = locate::logScaleLimit(prior);
+    std::vector<locate::Hypothesis> all;
     for (const double yaw : stepsOver(heading, shift / half.norm())) {
       for (const double x : stepsOver(scale, shift / half.x())) {
         for (const double y : stepsOver(scale, shift / half.y())) {
@@ -165,14 +165,14 @@ class FftAffine : public Method {
     return all;
   }
 
-  std::vector<Candidate> distinct(std::vector<Candidate> found, const GridFrame& frame) const {
+  std::vector<locate::Candidate> distinct(std::vector<locate::Candidate> found, const GridFrame& frame) const {
     std::stable_sort(found.begin(), found.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    std::vector<Candidate> result;
-    for (const Candidate& candidate : found) {
+                     [](const locate::Candidate& a, const locate::Candidate& b) { return a.score > b.score; });
+    std::vector<locate::Candidate> result;
+    for (const locate::Candidate& candidate : found) {
       if (result.size() == static_cast<std::size_t>(options_.candidates)) break;
       if (!(candidate.score > 0.0)) break;
-      const bool known = std::any_of(result.begin(), result.end(), [&](const Candidate& better) {
+      const bool known = std::any_of(result.begin(), result.end(), [&](const locate::Candidate& better) {
         return farthestCorner(frame, better.pose, candidate.pose) < options_.apart;
       });
       if (!known) result.push_back(candidate);
@@ -181,36 +181,36 @@ class FftAffine : public Method {
   }
 
   std::optional<Eigen::Affine2d> refine(const PeerMaps& maps,
-                                        const std::vector<Candidate>& candidates) const {
-    std::vector<std::optional<DenseRefineResult>> refined(candidates.size());
-    std::vector<SignalMap> fixed;
-    std::vector<SignalMap> moving;
+                                        const std::vector<locate::Candidate>& candidates) const {
+    std::vector<std::optional<refine::DenseRefineResult>> refined(candidates.size());
+    std::vector<map::SignalMap> fixed;
+    std::vector<map::SignalMap> moving;
     for (const int factor : kCoarse) {
-      fixed.push_back(makeSignalMap(maps.fixed, factor, {}));
-      moving.push_back(makeSignalMap(maps.moving, factor, {}));
+      fixed.push_back(map::makeSignalMap(maps.fixed, factor, {}));
+      moving.push_back(map::makeSignalMap(maps.moving, factor, {}));
     }
     parallelFor(candidates.size(), [&](std::size_t i) {
       Eigen::Affine2d pose = candidates[i].pose;
       for (std::size_t level = 0; level < fixed.size(); ++level) {
-        refined[i] = refineDense(fixed[level], moving[level], pose, options_.dense);
-        if (refined[i]->status != RefineStatus::kConverged) {
+        refined[i] = refine::refineDense(fixed[level], moving[level], pose, options_.dense);
+        if (refined[i]->status != refine::RefineStatus::kConverged) {
           refined[i].reset();
           return;
         }
         pose = refined[i]->fixed_from_moving;
       }
     });
-    const DenseRefineResult* best = nullptr;
+    const refine::DenseRefineResult* best = nullptr;
     for (const auto& one : refined) {
       if (one && (best == nullptr || one->correlation > best->correlation)) best = &*one;
     }
     if (best == nullptr) return std::nullopt;
     Eigen::Affine2d pose = best->fixed_from_moving;
     for (const int factor : kFine) {
-      const DenseRefineResult finer =
-          refineDense(makeSignalMap(maps.fixed, factor, {}), makeSignalMap(maps.moving, factor, {}),
+      const refine::DenseRefineResult finer =
+          refine::refineDense(map::makeSignalMap(maps.fixed, factor, {}), map::makeSignalMap(maps.moving, factor, {}),
                       pose, options_.dense);
-      if (finer.status != RefineStatus::kConverged) break;
+      if (finer.status != refine::RefineStatus::kConverged) break;
       pose = finer.fixed_from_moving;
     }
     return pose;

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "agricolmap/6_refine/dense_refine.hpp"
+#include "agricolmap/refine/dense_refine.hpp"
 #include "methods/method.hpp"
 
 namespace agricolmap::compare {
@@ -16,7 +16,7 @@ struct FftAffineOptions {
   int candidates = 30;  ///< best hypotheses that are refined
   double apart = 0.3;   ///< by which two of them lay a corner apart at least [m]
   double least_energy = 0.5;  ///< of the fixed map under the strip, in its mean: keeps off the rim
-  DenseRefineOptions dense;
+  refine::DenseRefineOptions dense;
 };
 
 /// For every heading and pair of scales that the guess allows, in steps that move the ends of the

@@ -11,7 +11,7 @@ namespace agricolmap::compare {
 namespace {
 
 TEST(PlainCorrelation, FindsWhereAPieceWasCut) {
-  SignalMap map;
+  map::SignalMap map;
   map.frame.cell = 0.1;
   map.frame.rows = 40;
   map.frame.cols = 50;
@@ -36,8 +36,8 @@ TEST(PlainCorrelation, FindsWhereAPieceWasCut) {
   EXPECT_LT(correlation.best(piece, map.frame.centre(10, 10), 0.5).score, 0.5 * peak.score);
 }
 
-PriorUncertainty somePrior() {
-  PriorUncertainty prior;
+locate::PriorUncertainty somePrior() {
+  locate::PriorUncertainty prior;
   prior.translation = 2.0;
   prior.heading_deg = 6.0;
   prior.scale = 0.10;
@@ -61,7 +61,7 @@ TEST(FftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeFftAffi
 TEST(SiftAffine, IsRightFromNearby) {
   testing::GuessError error;
   error.shift = {0.3, -0.2};
-  PriorUncertainty prior = somePrior();
+  locate::PriorUncertainty prior = somePrior();
   prior.translation = 0.5;
   prior.heading_deg = 1.0;
   prior.scale = 0.02;

@@ -33,7 +33,7 @@ struct Pose {
   double height = 0.0;  ///< added to the moving heights [m]
 };
 
-Sums pairUp(const NearestPoints& fixed, const std::vector<VegetationPoint>& moving,
+Sums pairUp(const NearestPoints& fixed, const std::vector<map::VegetationPoint>& moving,
             const Eigen::Vector2d& middle, const Pose& pose, double most) {
   return parallelSum(moving.size(), 1024, Sums{}, [&](std::size_t begin, std::size_t end) {
     Sums part;
@@ -54,9 +54,9 @@ Sums pairUp(const NearestPoints& fixed, const std::vector<VegetationPoint>& movi
   });
 }
 
-double farthestCorner(const Box2& box, const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
+double farthestCorner(const map::Box2& box, const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
   double farthest = 0.0;
-  for (const auto which : {Box2::BottomLeft, Box2::BottomRight, Box2::TopLeft, Box2::TopRight}) {
+  for (const auto which : {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
     const Eigen::Vector2d corner = box.corner(which);
     farthest = std::max(farthest, (a * corner - b * corner).norm());
   }
@@ -91,12 +91,12 @@ class IcpAffine : public Method {
   std::string iterate(const PeerPoints& points, Pose& pose, bool& converged) const {
     std::vector<Eigen::Vector3d> targets;
     targets.reserve(points.fixed.size());
-    for (const VegetationPoint& p : points.fixed) {
+    for (const map::VegetationPoint& p : points.fixed) {
       targets.emplace_back(p.position.x(), p.position.y(), p.height);
     }
     const NearestPoints fixed(std::move(targets), 0.1);
-    Box2 box;
-    for (const VegetationPoint& p : points.moving) box.extend(p.position);
+    map::Box2 box;
+    for (const map::VegetationPoint& p : points.moving) box.extend(p.position);
     const Eigen::Vector2d middle = box.center();
     converged = false;
     for (int i = 0; i < options_.iterations && !converged; ++i) {

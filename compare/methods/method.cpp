@@ -33,7 +33,7 @@ class OracleScale : public Method {
       throw UsageError(name() + ": needs the true transform (--true-transform), for its scales");
     }
     MethodInput known = input;
-    known.guess = withTrueScales(input.guess, *input.truth, meanOf(input.moving));
+    known.guess = withTrueScales(input.guess, *input.truth, pipeline::meanOf(input.moving));
     known.truth.reset();
     known.prior.scale = 0.0;
     outcome = method_->run(known);

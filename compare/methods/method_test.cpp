@@ -51,7 +51,7 @@ class Echo : public Method {
 };
 
 TEST(Methods, OracleScaleMendsScalesAndNothingElse) {
-  const SimulatedPair& pair = testing::smallPair();
+  const simulate::SimulatedPair& pair = testing::smallPair();
   testing::GuessError error;
   error.shift = {0.7, -0.3};
   error.scale = {1.2, 0.8};
@@ -78,11 +78,11 @@ TEST(Product, DefaultFindsTheStrip) {
 TEST(Product, PaperChainFindsTheStripAndSaysItsMatches) {
   testing::GuessError error;
   error.shift = {0.6, -0.4};
-  PriorUncertainty prior;
+  locate::PriorUncertainty prior;
   prior.translation = 1.0;
   prior.heading_deg = 2.0;
   prior.scale = 0.05;
-  const SimulatedPair& pair = testing::smallPair();
+  const simulate::SimulatedPair& pair = testing::smallPair();
   const MethodOutcome outcome = makeMethod("agricolmap")->run(testing::inputOf(pair, error, prior));
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
   EXPECT_TRUE(testing::errorsOf(outcome, pair).within({}));

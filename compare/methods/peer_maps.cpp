@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "agricolmap/6_refine/vertical.hpp"
+#include "agricolmap/refine/vertical.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/pipeline/options.hpp"
 
@@ -15,22 +15,22 @@ namespace {
 constexpr std::size_t kLeastPoints = 20;
 
 /// The fixed map within `rim` of the moving map's bounds.
-GridMap fixedAround(const PeerMaps& maps, double rim) {
+map::GridMap fixedAround(const PeerMaps& maps, double rim) {
   const GridFrame& frame = maps.moving.frame;
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(rim);
   const Eigen::Vector2d size = frame.cell * Eigen::Vector2d(frame.cols, frame.rows);
-  return croppedMap(maps.fixed, Box2(frame.corner - margin, frame.corner + size + margin));
+  return map::croppedMap(maps.fixed, map::Box2(frame.corner - margin, frame.corner + size + margin));
 }
 
-std::vector<VegetationPoint> pointsOf(const GridMap& map, std::size_t most,
+std::vector<map::VegetationPoint> pointsOf(const map::GridMap& map, std::size_t most,
                                       std::string_view which) {
-  const Vegetation vegetation = extractVegetation(map, {});
+  const map::Vegetation vegetation = map::extractVegetation(map, {});
   if (vegetation.points.size() < kLeastPoints) {
     throw InputError(
         fmt::format("vegetation cannot be told from soil in the {} map: {} ({} points)", which,
                     describe(vegetation.threshold.status), vegetation.points.size()));
   }
-  return thinToAtMost(vegetation.points, most);
+  return map::thinToAtMost(vegetation.points, most);
 }
 
 }  // namespace
@@ -41,22 +41,22 @@ PeerMaps makePeerMaps(const MethodInput& input, StageTimes& times) {
       throw InputError(fmt::format("{}: has no colours; Excess Green needs them", cloud->name));
     }
   }
-  const RegistrationOptions paper = preset("paper");
+  const pipeline::RegistrationOptions paper = pipeline::preset("paper");
   PeerMaps maps;
-  const Eigen::Affine3d guess = centredGuess(input.fixed, input.moving, input.guess, input.prior);
+  const Eigen::Affine3d guess = pipeline::centredGuess(input.fixed, input.moving, input.guess, input.prior);
   times.run("level", [&] {
-    levelFixed(input.fixed, paper.level, maps.frames);
-    levelMoving(input.fixed, input.moving, guess, paper.level, maps.frames);
+    pipeline::levelFixed(input.fixed, paper.level, maps.frames);
+    pipeline::levelMoving(input.fixed, input.moving, guess, paper.level, maps.frames);
   });
   times.run("grid", [&] {
-    const Box2 fixed = boundsOf(input.fixed, maps.frames.levelled_from_fixed);
-    const Box2 moving = boundsOf(input.moving, maps.frames.levelled_from_moving);
-    requirePlausibleExtents(input.fixed, input.moving, fixed, moving);
-    maps.space = searchSpace(moving, maps.frames, input.prior);
-    const Box2 window = reachableWindow(moving, maps.space, 2.0 * paper.signal.high_pass);
-    maps.fixed = makeGridMap(input.fixed, maps.frames.levelled_from_fixed,
+    const map::Box2 fixed = boundsOf(input.fixed, maps.frames.levelled_from_fixed);
+    const map::Box2 moving = boundsOf(input.moving, maps.frames.levelled_from_moving);
+    pipeline::requirePlausibleExtents(input.fixed, input.moving, fixed, moving);
+    maps.space = pipeline::searchSpace(moving, maps.frames, input.prior);
+    const map::Box2 window = pipeline::reachableWindow(moving, maps.space, 2.0 * paper.signal.high_pass);
+    maps.fixed = map::makeGridMap(input.fixed, maps.frames.levelled_from_fixed,
                              window.intersection(fixed), paper.grid);
-    maps.moving = makeGridMap(input.moving, maps.frames.levelled_from_moving, moving, paper.grid);
+    maps.moving = map::makeGridMap(input.moving, maps.frames.levelled_from_moving, moving, paper.grid);
   });
   return maps;
 }
@@ -73,14 +73,14 @@ PeerPoints makePeerPoints(const PeerMaps& maps, double rim, std::size_t most_fix
 
 void setPlanePose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine2d& pose,
                   MethodOutcome& outcome) {
-  const VerticalResult vertical = outcome.times.run(
-      "vertical", [&] { return fitVertical(maps.fixed, maps.moving, pose, VerticalOptions{}); });
-  if (vertical.status != VerticalStatus::kOk) {
+  const refine::VerticalResult vertical = outcome.times.run(
+      "vertical", [&] { return refine::fitVertical(maps.fixed, maps.moving, pose, refine::VerticalOptions{}); });
+  if (vertical.status != refine::VerticalStatus::kOk) {
     outcome.accepted = false;
     outcome.why = "the heights of the two maps do not fit one another";
     return;
   }
-  setLevelledPose(maps, input, liftPose(pose, vertical), outcome);
+  setLevelledPose(maps, input, refine::liftPose(pose, vertical), outcome);
 }
 
 void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine3d& pose,
@@ -90,8 +90,8 @@ void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen
       maps.frames.levelled_from_moving * Eigen::Translation3d(-input.moving.origin);
 }
 
-MatchSet matchSet(const PairFrames& frames, const MethodInput& input,
-                  const std::vector<Match>& matches, std::size_t inliers) {
+MatchSet matchSet(const pipeline::PairFrames& frames, const MethodInput& input,
+                  const std::vector<locate::Match>& matches, std::size_t inliers) {
   const Eigen::Affine3d fixed_file =
       Eigen::Translation3d(input.fixed.origin) * frames.levelled_from_fixed.inverse();
   const Eigen::Affine3d moving_file =
@@ -100,7 +100,7 @@ MatchSet matchSet(const PairFrames& frames, const MethodInput& input,
   MatchSet set;
   set.inliers = inliers;
   set.pairs.reserve(matches.size());
-  for (const Match& match : matches) {
+  for (const locate::Match& match : matches) {
     set.pairs.push_back({moving_file * lifted(match.moving), fixed_file * lifted(match.fixed)});
   }
   return set;

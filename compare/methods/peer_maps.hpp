@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "agricolmap/2_grid/signal_map.hpp"
-#include "agricolmap/6_refine/vegetation.hpp"
+#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/map/vegetation.hpp"
 #include "agricolmap/pipeline/pair_maps.hpp"
 #include "methods/method.hpp"
 
@@ -15,10 +15,10 @@ namespace agricolmap::compare {
 /// Stages 1 and 2 of the paper. Levelling and gridding are given to all peers alike: a method that
 /// works in the plane would else lose by a tilt that the ground says for nothing.
 struct PeerMaps {
-  PairFrames frames;
-  SearchSpace space;
-  GridMap fixed;   ///< what the moving map can reach, levelled fixed frame
-  GridMap moving;  ///< levelled moving frame: the guess is applied
+  pipeline::PairFrames frames;
+  locate::SearchSpace space;
+  map::GridMap fixed;   ///< what the moving map can reach, levelled fixed frame
+  map::GridMap moving;  ///< levelled moving frame: the guess is applied
 };
 
 /// Throws InputError for clouds that cannot be used, or have no colours.
@@ -26,8 +26,8 @@ PeerMaps makePeerMaps(const MethodInput& input, StageTimes& times);
 
 /// Vegetation points of both maps in the levelled frames [m].
 struct PeerPoints {
-  std::vector<VegetationPoint> fixed;
-  std::vector<VegetationPoint> moving;
+  std::vector<map::VegetationPoint> fixed;
+  std::vector<map::VegetationPoint> moving;
 };
 
 /// The points above each map's threshold on Excess Green, merged to squares so that at most the
@@ -46,7 +46,7 @@ void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen
                      MethodOutcome& outcome);
 
 /// Matches in the levelled frames, in file coordinates.
-MatchSet matchSet(const PairFrames& frames, const MethodInput& input,
-                  const std::vector<Match>& matches, std::size_t inliers);
+MatchSet matchSet(const pipeline::PairFrames& frames, const MethodInput& input,
+                  const std::vector<locate::Match>& matches, std::size_t inliers);
 
 }  // namespace agricolmap::compare

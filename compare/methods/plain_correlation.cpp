@@ -5,13 +5,13 @@
 
 namespace agricolmap::compare {
 
-PlainCorrelation::PlainCorrelation(const SignalMap& fixed, int most_rows, int most_cols,
+PlainCorrelation::PlainCorrelation(const map::SignalMap& fixed, int most_rows, int most_cols,
                                    double least_energy)
     : frame_(fixed.frame),
       most_rows_(most_rows),
       most_cols_(most_cols),
-      fft_(Fft2::goodSize(fixed.frame.rows + most_rows),
-           Fft2::goodSize(fixed.frame.cols + most_cols)) {
+      fft_(correlation::Fft2::goodSize(fixed.frame.rows + most_rows),
+           correlation::Fft2::goodSize(fixed.frame.cols + most_cols)) {
   const Raster<float>& value = fixed.channel[0];
   Raster<float> square(value.rows(), value.cols());
   double energy = 0.0;
@@ -26,18 +26,18 @@ PlainCorrelation::PlainCorrelation(const SignalMap& fixed, int most_rows, int mo
   squared_ = spectrumOf(square, 0, 0);
 }
 
-ComplexRaster PlainCorrelation::spectrumOf(const Raster<float>& values, int first_row,
+correlation::ComplexRaster PlainCorrelation::spectrumOf(const Raster<float>& values, int first_row,
                                            int first_col) const {
   const int rows = fft_.rows();
   const int width = values.cols();
-  ComplexRaster strip(static_cast<std::size_t>(rows) * width);
-  ComplexRaster strip_scratch(strip.size());
+  correlation::ComplexRaster strip(static_cast<std::size_t>(rows) * width);
+  correlation::ComplexRaster strip_scratch(strip.size());
   for (int r = 0; r < values.rows(); ++r) {
     const int row = ((r + first_row) % rows + rows) % rows;
     std::copy_n(values.row(r), width, &strip.re[static_cast<std::size_t>(row) * width]);
   }
-  ComplexRaster spectrum(fft_.size());
-  ComplexRaster scratch(fft_.size());
+  correlation::ComplexRaster spectrum(fft_.size());
+  correlation::ComplexRaster scratch(fft_.size());
   fft_.forwardPiece(strip, strip_scratch, width, first_col, spectrum, scratch);
   return spectrum;
 }
@@ -52,10 +52,10 @@ PlainCorrelation::Peak PlainCorrelation::best(const Piece& piece, const Eigen::V
   }
   Peak peak;
   if (!(energy > 0.0)) return peak;
-  const ComplexRaster signal = spectrumOf(piece.value, piece.first_row, piece.first_col);
-  const ComplexRaster mask = spectrumOf(piece.seen, piece.first_row, piece.first_col);
+  const correlation::ComplexRaster signal = spectrumOf(piece.value, piece.first_row, piece.first_col);
+  const correlation::ComplexRaster mask = spectrumOf(piece.seen, piece.first_row, piece.first_col);
   // Both correlations are real: as real and imaginary part of one raster they share an inverse.
-  ComplexRaster both(fft_.size());
+  correlation::ComplexRaster both(fft_.size());
   for (std::size_t i = 0; i < both.size(); ++i) {
     const float ar = signal.re[i] * fixed_.re[i] + signal.im[i] * fixed_.im[i];
     const float ai = signal.re[i] * fixed_.im[i] - signal.im[i] * fixed_.re[i];
@@ -64,7 +64,7 @@ PlainCorrelation::Peak PlainCorrelation::best(const Piece& piece, const Eigen::V
     both.re[i] = ar - bi;
     both.im[i] = ai + br;
   }
-  ComplexRaster scratch(fft_.size());
+  correlation::ComplexRaster scratch(fft_.size());
   fft_.inverse(both, scratch);
   for (int r = 0; r < frame_.rows; ++r) {
     for (int c = 0; c < frame_.cols; ++c) {

@@ -3,15 +3,15 @@
 
 #include <Eigen/Core>
 
-#include "agricolmap/2_grid/signal_map.hpp"
-#include "agricolmap/4_associate/correlate/fft.hpp"
+#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/correlation/fft.hpp"
 
 namespace agricolmap::compare {
 
 class PlainCorrelation {
  public:
   /// `most_rows`, `most_cols`: of the pieces to come. `least_energy`: as in FftAffineOptions.
-  PlainCorrelation(const SignalMap& fixed, int most_rows, int most_cols, double least_energy);
+  PlainCorrelation(const map::SignalMap& fixed, int most_rows, int most_cols, double least_energy);
 
   /// A piece of the moving map at the fixed map's cell size; element (r, c) stands at the row and
   /// column first_row + r, first_col + c from its anchor.
@@ -33,14 +33,14 @@ class PlainCorrelation {
   int mostCols() const { return most_cols_; }
 
  private:
-  ComplexRaster spectrumOf(const Raster<float>& values, int first_row, int first_col) const;
+  correlation::ComplexRaster spectrumOf(const Raster<float>& values, int first_row, int first_col) const;
 
   GridFrame frame_;
   int most_rows_;
   int most_cols_;
-  Fft2 fft_;
-  ComplexRaster fixed_;    ///< spectrum of the signal
-  ComplexRaster squared_;  ///< and of its square
+  correlation::Fft2 fft_;
+  correlation::ComplexRaster fixed_;    ///< spectrum of the signal
+  correlation::ComplexRaster squared_;  ///< and of its square
   double floor_;           ///< least energy per cell
 };
 

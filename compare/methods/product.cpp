@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "agricolmap/2_grid/data_term.hpp"
+#include "agricolmap/map/data_term.hpp"
 #include "methods/peer_maps.hpp"
 
 namespace agricolmap::compare {
@@ -17,21 +17,21 @@ namespace {
 struct Chain {
   std::string_view name;
   std::string_view preset;
-  DataTerm term;
+  map::DataTerm term;
   std::string_view about;
 };
 
 // The variants are those of the paper's Tab. IV: only the flow's cost changes. The refinement tells
 // plants by their greenness in all of them.
 constexpr std::array<Chain, 5> kChains = {{
-    {"agricolmap", "paper", DataTerm::kExgHeight,
+    {"agricolmap", "paper", map::DataTerm::kExgHeight,
      "the paper's chain: flow on Excess Green and height, vote, affine, CPD"},
-    {"agricolmap-rgb", "paper", DataTerm::kRgb, "the paper's chain with its flow on colours"},
-    {"agricolmap-exg", "paper", DataTerm::kExg,
+    {"agricolmap-rgb", "paper", map::DataTerm::kRgb, "the paper's chain with its flow on colours"},
+    {"agricolmap-exg", "paper", map::DataTerm::kExg,
      "the paper's chain with its flow on Excess Green alone"},
-    {"agricolmap-height", "paper", DataTerm::kHeight,
+    {"agricolmap-height", "paper", map::DataTerm::kHeight,
      "the paper's chain with its flow on height alone"},
-    {"default", "default", DataTerm::kExgHeight, "the product's default preset"},
+    {"default", "default", map::DataTerm::kExgHeight, "the product's default preset"},
 }};
 
 class Product : public Method {
@@ -42,13 +42,13 @@ class Product : public Method {
 
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    RegistrationOptions options = preset(std::string(chain_.preset));
+    pipeline::RegistrationOptions options = pipeline::preset(std::string(chain_.preset));
     options.prior = input.prior;
     options.flow.describe.term = chain_.term;
-    const Registration result =
-        registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
+    const pipeline::Registration result =
+        pipeline::registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
     fillFrom(result, input, outcome);
-    if (options.association != AssociationKind::kFlow) outcome.matches.reset();
+    if (options.association != pipeline::AssociationKind::kFlow) outcome.matches.reset();
   }
 
  private:
@@ -57,11 +57,11 @@ class Product : public Method {
 
 }  // namespace
 
-void fillFrom(const Registration& result, const MethodInput& input, MethodOutcome& outcome) {
-  outcome.accepted = result.verdict.status == Status::kAccepted;
+void fillFrom(const pipeline::Registration& result, const MethodInput& input, MethodOutcome& outcome) {
+  outcome.accepted = result.verdict.status == verdict::Status::kAccepted;
   if (!outcome.accepted) outcome.why = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
   if (result.has_transform) outcome.fixed_from_moving = result.fixed_from_moving;
-  const AssociationResult& found = result.association;
+  const locate::AssociationResult& found = result.association;
   const auto count = [&](std::string_view wanted) {
     for (const auto& [name, value] : found.counts) {
       if (name == wanted) return static_cast<std::size_t>(value);

@@ -22,21 +22,21 @@ struct GuessError {
 };
 
 /// A strip of 6 m in a field of sugar beets of 14 m, made once.
-inline const SimulatedPair& smallPair() {
-  static const SimulatedPair pair = [] {
-    SimulationOptions options = cropPreset(Crop::kSugarBeet10m);
+inline const simulate::SimulatedPair& smallPair() {
+  static const simulate::SimulatedPair pair = [] {
+    simulate::SimulationOptions options = simulate::cropPreset(simulate::Crop::kSugarBeet10m);
     options.field.width = 14.0;
     options.field.height = 14.0;
     options.ugv.length = 6.0;
     options.seed = 31;
-    return simulatePair(options);
+    return simulate::simulatePair(options);
   }();
   return pair;
 }
 
 /// The truth, off by `error`: what the guess would be if nothing else were wrong with it.
-inline Eigen::Affine3d guessOff(const SimulatedPair& pair, const GuessError& error) {
-  const Eigen::Vector3d middle = meanOf(pair.ugv);
+inline Eigen::Affine3d guessOff(const simulate::SimulatedPair& pair, const GuessError& error) {
+  const Eigen::Vector3d middle = pipeline::meanOf(pair.ugv);
   const Eigen::Vector3d there = pair.best_affine * middle;
   const Eigen::Translation3d shift(error.shift.x(), error.shift.y(), 0.0);
   return shift * Eigen::Translation3d(there) *
@@ -45,22 +45,22 @@ inline Eigen::Affine3d guessOff(const SimulatedPair& pair, const GuessError& err
          Eigen::Scaling(error.scale.x(), error.scale.y(), 1.0) * Eigen::Translation3d(-middle);
 }
 
-inline MethodInput inputOf(const SimulatedPair& pair, const GuessError& error,
-                           const PriorUncertainty& prior) {
+inline MethodInput inputOf(const simulate::SimulatedPair& pair, const GuessError& error,
+                           const locate::PriorUncertainty& prior) {
   return {.fixed = pair.uav, .moving = pair.ugv, .guess = guessOff(pair, error), .prior = prior};
 }
 
 /// Errors of an outcome that has a transform.
-inline RegistrationErrors errorsOf(const MethodOutcome& outcome, const SimulatedPair& pair) {
-  return evaluateTransform(*outcome.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
+inline evaluate::RegistrationErrors errorsOf(const MethodOutcome& outcome, const simulate::SimulatedPair& pair) {
+  return evaluate::evaluateTransform(*outcome.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
 }
 
 /// Runs the method on the small pair and expects it within the paper's limits.
 inline void expectRight(const Method& method, const GuessError& error,
-                        const PriorUncertainty& prior) {
+                        const locate::PriorUncertainty& prior) {
   const MethodOutcome outcome = method.run(inputOf(smallPair(), error, prior));
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << method.name() << ": " << outcome.why;
-  const RegistrationErrors errors = errorsOf(outcome, smallPair());
+  const evaluate::RegistrationErrors errors = errorsOf(outcome, smallPair());
   EXPECT_TRUE(errors.within({})) << method.name() << ": RMS " << errors.rms << " m ("
                                  << errors.rms_horizontal << " horizontal), e_t "
                                  << errors.translation << " m, e_r " << errors.rotation
@@ -77,7 +77,7 @@ inline void expectLost(const Method& method, const GuessError& error) {
 
 /// An empty map, and one without plants, are clear failures and never the guess handed back.
 inline void expectFailsOnEmptyMaps(const Method& method) {
-  const SimulatedPair& pair = smallPair();
+  const simulate::SimulatedPair& pair = smallPair();
   Cloud none;
   none.name = "none.ply";
   MethodInput input{.fixed = none, .moving = pair.ugv, .guess = pair.best_affine};

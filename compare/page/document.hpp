@@ -34,12 +34,12 @@ struct Figure {
   std::string svg;
 };
 
-using Block = std::variant<Heading, Paragraph, Table, Figure>;
+using map::Block = std::variant<Heading, Paragraph, Table, Figure>;
 
 struct Document {
   std::string title;
   std::string subtitle;
-  std::vector<Block> blocks;
+  std::vector<map::Block> blocks;
 };
 
 /// One file that needs nothing else: no scripts, no fonts, no pictures from elsewhere.

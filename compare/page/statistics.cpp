@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "agricolmap/io/text.hpp"
+#include "agricolmap/io/text/text.hpp"
 #include "runner/datasets.hpp"
 
 namespace agricolmap::compare {
@@ -54,7 +54,7 @@ void addStages(std::string_view text, std::map<std::string, double>& sums) {
     text.remove_prefix(std::min(text.size(), part.size() + 1));
     const std::size_t equals = part.find('=');
     if (equals == std::string_view::npos) continue;
-    if (const auto value = parseNumber(part.substr(equals + 1))) {
+    if (const auto value = io::parseNumber(part.substr(equals + 1))) {
       sums[std::string(part.substr(0, equals))] += *value;
     }
   }

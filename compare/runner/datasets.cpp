@@ -26,7 +26,7 @@ constexpr Origin kOrigins[] = {
 };
 
 /// The comparison disturbs the exact guess itself, for all methods alike.
-void makeGuessExact(GeotagOptions& geotag) {
+void makeGuessExact(simulate::GeotagOptions& geotag) {
   geotag.translation = geotag.heading_deg = geotag.scale = 0.0;
   geotag.z = geotag.tilt_deg = geotag.across_rows = 0.0;
   geotag.unknown_scale = 1.0;

@@ -4,7 +4,7 @@
 
 #include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
 
 namespace agricolmap::compare {
 namespace {
@@ -30,7 +30,7 @@ void checkTruth(const PublishedPair& pair, const Cloud& fixed, const Cloud& movi
 }
 
 Cloud readUsable(const std::filesystem::path& path) {
-  Cloud cloud = readCloud(path);
+  Cloud cloud = io::readCloud(path);
   if (cloud.empty()) throw InputError(fmt::format("{}: has no usable point", path.string()));
   return cloud;
 }

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/matrix_file.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/test_support.hpp"
 #include "runner/experiments.hpp"
 #include "runner/pair_provider.hpp"
@@ -45,9 +45,9 @@ class PublishedFolder : public test::TempDir {
   }
   void cloud(const std::string& folder, const Cloud& cloud) const {
     fs::create_directories(path() / crop_ / folder);
-    writePly(path() / crop_ / folder / "point_cloud.ply", cloud);
+    io::writePly(path() / crop_ / folder / "point_cloud.ply", cloud);
   }
-  void truth(int row, const Eigen::Affine3d& affine) const { writeMatrix(truthFile(row), affine); }
+  void truth(int row, const Eigen::Affine3d& affine) const { io::writeMatrix(truthFile(row), affine); }
   fs::path truthFile(int row) const {
     return path() / crop_ / fmt::format("ugv_row{}", row) / "ground_truth.txt";
   }
@@ -83,7 +83,7 @@ TEST(PublishedSets, SeedsVaryTheGuessOnTheSameClouds) {
   const campaign::CampaignPair two = provider.make(sets[0], 2);
   EXPECT_EQ(one.fixed, two.fixed) << "read once";
   EXPECT_EQ(one.moving.xyz, two.moving.xyz);
-  const Cell cell{"translation", 5.0, 5.0, 0.0, 0.0};
+  const simulate::Cell cell{"translation", 5.0, 5.0, 0.0, 0.0};
   const Eigen::Affine3d first = wrongGuess(cell, 1, one.moving, one.prior);
   const Eigen::Affine3d second = wrongGuess(cell, 2, two.moving, two.prior);
   EXPECT_NEAR((first.translation() - one.prior.translation()).norm(), 5.0, 1e-6);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/text.hpp"
+#include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::compare {
 namespace {
@@ -17,12 +17,12 @@ constexpr std::string_view kHeader =
     "matches,right,coherent,rematches,rematches_right,rematches_coherent,stages,note";
 constexpr std::size_t kColumns = 29;
 
-constexpr double RegistrationErrors::*kErrors[] = {&RegistrationErrors::rms,
-                                                   &RegistrationErrors::rms_horizontal,
-                                                   &RegistrationErrors::rms_to_best_affine,
-                                                   &RegistrationErrors::translation,
-                                                   &RegistrationErrors::rotation,
-                                                   &RegistrationErrors::scale};
+constexpr double evaluate::RegistrationErrors::*kErrors[] = {&evaluate::RegistrationErrors::rms,
+                                                   &evaluate::RegistrationErrors::rms_horizontal,
+                                                   &evaluate::RegistrationErrors::rms_to_best_affine,
+                                                   &evaluate::RegistrationErrors::translation,
+                                                   &evaluate::RegistrationErrors::rotation,
+                                                   &evaluate::RegistrationErrors::scale};
 constexpr double Row::*kNumbers[] = {&Row::wall_s, &Row::run_s, &Row::cpu_s, &Row::peak_mib,
                                      &Row::idle_mib};
 constexpr MatchCounts Row::*kMatchings[] = {&Row::first, &Row::last};
@@ -66,7 +66,7 @@ std::vector<std::string_view> splitFields(std::string_view line) {
 
 double real(std::string_view field, const std::string& place) {
   if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto value = parseNumber(field);
+  const auto value = io::parseNumber(field);
   if (!value) throw InputError(fmt::format("{}: '{}' is no number", place, field));
   return *value;
 }

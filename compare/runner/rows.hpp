@@ -37,7 +37,7 @@ struct Row {
   std::string status;
   bool accepted = false;  ///< the method stands by its transform
   bool correct = false;   ///< the transform is within SuccessLimits, whatever the method says
-  RegistrationErrors errors;
+  evaluate::RegistrationErrors errors;
   double wall_s = std::numeric_limits<double>::quiet_NaN();  ///< of the process [s]
   double run_s = std::numeric_limits<double>::quiet_NaN();   ///< without reading the files [s]
   double cpu_s = std::numeric_limits<double>::quiet_NaN();

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/cloud_writer.hpp"
-#include "agricolmap/io/matrix_file.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "runner/child_process.hpp"
 
 namespace agricolmap::compare {
@@ -37,9 +37,9 @@ Eigen::Affine3d matrixOf(const nlohmann::json& rows) {
   return matrix;
 }
 
-RegistrationErrors noErrors() {
+evaluate::RegistrationErrors noErrors() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  RegistrationErrors errors;
+  evaluate::RegistrationErrors errors;
   errors.rms = errors.rms_horizontal = errors.rms_vertical = errors.worst = nan;
   errors.rms_to_best_affine = errors.translation = errors.rotation = errors.scale = nan;
   return errors;
@@ -64,7 +64,7 @@ void fillFromJson(const nlohmann::json& json, const PairFiles::Moving& moving, R
   }
   if (json.at("fixed_from_moving").is_null()) return;
   row.errors =
-      evaluateTransform(matrixOf(json.at("fixed_from_moving")), moving.truth, moving.cloud);
+      evaluate::evaluateTransform(matrixOf(json.at("fixed_from_moving")), moving.truth, moving.cloud);
   row.correct = row.errors.within({});
 }
 
@@ -72,10 +72,10 @@ void fillFromJson(const nlohmann::json& json, const PairFiles::Moving& moving, R
 
 PairFiles::PairFiles(std::filesystem::path folder, campaign::CampaignPair pair, int seed)
     : folder_(std::move(folder)), pair_(std::move(pair)), seed_(seed) {
-  writePly(fixedFile(), *pair_.fixed);
+  io::writePly(fixedFile(), *pair_.fixed);
 }
 
-const PairFiles::Moving& PairFiles::moving(const Cell& cell) {
+const PairFiles::Moving& PairFiles::moving(const simulate::Cell& cell) {
   const std::lock_guard lock(mutex_);
   const std::string key = fmt::format("{:.4g}", cell.scale);
   const auto known = moving_.find(key);
@@ -85,23 +85,23 @@ const PairFiles::Moving& PairFiles::moving(const Cell& cell) {
               folder_ / fmt::format("truth_{}.txt", key), pair_.moving, pair_.truth};
   transformCloud(made.cloud, scaled);
   made.truth.best_affine = pair_.truth.best_affine * scaled.inverse();
-  writePly(made.cloud_file, made.cloud);
-  writeMatrix(made.truth_file, made.truth.best_affine, "truth, moving file -> fixed file");
+  io::writePly(made.cloud_file, made.cloud);
+  io::writeMatrix(made.truth_file, made.truth.best_affine, "truth, moving file -> fixed file");
   return moving_.emplace(key, std::move(made)).first->second;
 }
 
-Eigen::Affine3d PairFiles::guess(const Cell& cell) {
+Eigen::Affine3d PairFiles::guess(const simulate::Cell& cell) {
   // The guess takes the file's lengths at face value; the middle is where it was.
   return wrongGuess(cell, seed_, pair_.moving, pair_.prior);
 }
 
-void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell, const std::string& name,
+void runMethod(const MethodCall& call, PairFiles& files, const simulate::Cell& cell, const std::string& name,
                Row& row) {
   const PairFiles::Moving& moving = files.moving(cell);
   const std::filesystem::path guess = files.folder() / (name + ".guess.txt");
   const std::filesystem::path result = files.folder() / (name + ".json");
   const std::filesystem::path log = files.folder() / (name + ".log");
-  writeMatrix(guess, files.guess(cell), "initial guess, moving file -> fixed file");
+  io::writeMatrix(guess, files.guess(cell), "initial guess, moving file -> fixed file");
   const ChildResult child = runChild(
       {call.program.string(), call.method, files.fixedFile().string(), moving.cloud_file.string(),
        "--guess", guess.string(), "--true-transform", moving.truth_file.string(), "--prior-sigma",

@@ -16,10 +16,10 @@ class FeatureChain : public Method {
 
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    RegistrationOptions options = preset("paper");
+    pipeline::RegistrationOptions options = pipeline::preset("paper");
     options.prior = input.prior;
     const FeatureAssociation association(*extractor_, {}, options.flow.vote);
-    const Registration result = registerClouds(input.fixed, input.moving, input.guess, options,
+    const pipeline::Registration result = pipeline::registerClouds(input.fixed, input.moving, input.guess, options,
                                                outcome.times, &association);
     fillFrom(result, input, outcome);
   }
@@ -31,23 +31,23 @@ class FeatureChain : public Method {
 
 }  // namespace
 
-AssociationResult FeatureAssociation::associate(const GridMap& fixed, const GridMap& moving,
-                                                const SearchSpace& space, StageTimes& times) const {
+locate::AssociationResult FeatureAssociation::associate(const map::GridMap& fixed, const map::GridMap& moving,
+                                                const locate::SearchSpace& space, StageTimes& times) const {
   Features fixed_features;
   Features moving_features;
   times.run("detect", [&] {
     fixed_features = extractor_.extract(exgImage(fixed));
     moving_features = extractor_.extract(exgImage(moving));
   });
-  AssociationResult result;
+  locate::AssociationResult result;
   result.all_matches = times.run("match", [&] {
     return matchFeatures(fixed_features, fixed.frame, moving_features, moving.frame, space,
                          matching_);
   });
-  const std::vector<VotedPlacement> voted = times.run(
-      "vote", [&] { return voteCoherent(result.all_matches, space, moving.frame.cell, vote_); });
-  for (const VotedPlacement& one : voted) {
-    Placement placement;
+  const std::vector<paper::VotedPlacement> voted = times.run(
+      "vote", [&] { return paper::voteCoherent(result.all_matches, space, moving.frame.cell, vote_); });
+  for (const paper::VotedPlacement& one : voted) {
+    locate::Placement placement;
     placement.score = static_cast<double>(one.inliers.size());
     for (const std::uint32_t i : one.inliers) placement.matches.push_back(result.all_matches[i]);
     result.placements.push_back(std::move(placement));

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "agricolmap/4_associate/vote/coherent_vote.hpp"
+#include "agricolmap/paper/vote/coherent_vote.hpp"
 #include "methods/features/features.hpp"
 #include "methods/method.hpp"
 
@@ -13,18 +13,18 @@ namespace agricolmap::compare {
 
 /// Features and the paper's vote as a data association. Counts as of the flow: `seeds` (keypoints
 /// of the moving map), `matches`, `inliers`, `inlier_share`; stages `detect`, `match`, `vote`.
-class FeatureAssociation : public Association {
+class FeatureAssociation : public locate::Association {
  public:
   explicit FeatureAssociation(const FeatureExtractor& extractor, const MatchOptions& matching = {},
-                              const VoteOptions& vote = {})
+                              const paper::VoteOptions& vote = {})
       : extractor_(extractor), matching_(matching), vote_(vote) {}
-  AssociationResult associate(const GridMap& fixed, const GridMap& moving, const SearchSpace& space,
+  locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
                               StageTimes& times) const override;
 
  private:
   const FeatureExtractor& extractor_;
   MatchOptions matching_;
-  VoteOptions vote_;
+  paper::VoteOptions vote_;
 };
 
 /// A method with the extractor's name.

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agricolmap/2_grid/signal_map.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::compare {
 
-ExgImage exgImage(const GridMap& map) {
+ExgImage exgImage(const map::GridMap& map) {
   const int rows = map.frame.rows;
   const int cols = map.frame.cols;
   ExgImage image{Raster<std::uint8_t>(rows, cols), Raster<std::uint8_t>(rows, cols)};
@@ -29,7 +29,7 @@ ExgImage exgImage(const GridMap& map) {
   const float middle = seen[seen.size() / 2];
   // From near cells where there are any, else from further ones.
   for (int radius = 2; radius <= 64; radius *= 2) {
-    const Raster<float> mean = weightedBoxMean(value, weight, radius);
+    const Raster<float> mean = map::weightedBoxMean(value, weight, radius);
     Raster<float> grown = weight;
     for (std::size_t i = 0; i < mean.size(); ++i) {
       if (weight[i] > 0.0F || mean[i] == 0.0F) continue;

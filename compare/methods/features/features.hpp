@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/2_grid/grid_map.hpp"
-#include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/raster.hpp"
 
 namespace agricolmap::compare {
@@ -20,7 +20,7 @@ struct ExgImage {
 
 /// Empty cells are filled smoothly from those around them: a hard border would be the strongest
 /// feature of a strip.
-ExgImage exgImage(const GridMap& map);
+ExgImage exgImage(const map::GridMap& map);
 
 /// Keypoints with descriptors of equal length, either real or binary.
 struct Features {
@@ -53,8 +53,8 @@ struct MatchOptions {
 
 /// Pairs of features that are each other's nearest among those that the guess allows; levelled
 /// frames [m].
-std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
+std::vector<locate::Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
                                  const Features& moving, const GridFrame& moving_frame,
-                                 const SearchSpace& space, const MatchOptions& options);
+                                 const locate::SearchSpace& space, const MatchOptions& options);
 
 }  // namespace agricolmap::compare

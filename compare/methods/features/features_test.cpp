@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "agricolmap/4_associate/flow/test_field.hpp"
+#include "agricolmap/map/test_field.hpp"
 #include "methods/features/feature_chain.hpp"
 #include "methods/features/opencv_features.hpp"
 #include "methods/features/surf_features.hpp"
@@ -18,10 +18,10 @@ using agricolmap::testing::viewOf;
 
 /// Two views of one field: the moving one a strip, laid `shift` off.
 struct Views {
-  GridMap fixed;
-  GridMap moving;
+  map::GridMap fixed;
+  map::GridMap moving;
   Eigen::Vector2d shift{0.42, -0.26};
-  SearchSpace space;
+  locate::SearchSpace space;
 };
 
 Views makeViews() {
@@ -29,20 +29,20 @@ Views makeViews() {
   field.size = 8.0;
   const auto truth = growField(field);
   Views views;
-  views.fixed = viewOf(truth, field, Box2(Eigen::Vector2d(0, 0), Eigen::Vector2d(8, 8)),
+  views.fixed = viewOf(truth, field, map::Box2(Eigen::Vector2d(0, 0), Eigen::Vector2d(8, 8)),
                        Eigen::Affine2d::Identity(), 0.01, 1);
   Eigen::Affine2d field_from_moving = Eigen::Affine2d::Identity();
   field_from_moving.translation() = views.shift;
-  views.moving = viewOf(truth, field, Box2(Eigen::Vector2d(2, 2), Eigen::Vector2d(6, 4)),
+  views.moving = viewOf(truth, field, map::Box2(Eigen::Vector2d(2, 2), Eigen::Vector2d(6, 4)),
                         field_from_moving, 0.01, 2);
   views.space.centre = {4.0, 3.0};
   views.space.uncertainty = {.translation = 1.0, .heading_deg = 2.0, .scale = 0.05};
   return views;
 }
 
-double rightShare(const std::vector<Match>& matches, const Eigen::Vector2d& shift) {
+double rightShare(const std::vector<locate::Match>& matches, const Eigen::Vector2d& shift) {
   double right = 0.0;
-  for (const Match& match : matches) {
+  for (const locate::Match& match : matches) {
     if ((match.fixed - match.moving - shift).norm() < 0.06) right += 1.0;
   }
   return matches.empty() ? 0.0 : right / static_cast<double>(matches.size());
@@ -70,14 +70,14 @@ TEST_P(Extractors, MatchWhatIsTheSame) {
   const Features fixed = extractor->extract(exgImage(views.fixed));
   const Features moving = extractor->extract(exgImage(views.moving));
   EXPECT_GT(moving.size(), 50U);
-  const std::vector<Match> matches =
+  const std::vector<locate::Match> matches =
       matchFeatures(fixed, views.fixed.frame, moving, views.moving.frame, views.space, {});
   EXPECT_GT(matches.size(), 40U) << extractor->name();
   EXPECT_GT(rightShare(matches, views.shift), 0.4) << extractor->name();
 }
 
 TEST_P(Extractors, FindNothingInAPictureOfOneShade) {
-  GridMap flat = makeViews().moving;
+  map::GridMap flat = makeViews().moving;
   for (float& value : flat.exg) value = 0.1F;
   EXPECT_EQ(make()->extract(exgImage(flat)).size(), 0U);
 }
@@ -111,7 +111,7 @@ TEST(ExgImage, FillsHolesWithoutBorders) {
 TEST(FeatureChains, AreRightFromNearby) {
   testing::GuessError error;
   error.shift = {0.25, -0.2};
-  PriorUncertainty prior;
+  locate::PriorUncertainty prior;
   prior.translation = 1.0;
   prior.heading_deg = 3.0;
   prior.scale = 0.05;

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "agricolmap/4_associate/flow/reach.hpp"
+#include "agricolmap/paper/flow/reach.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "methods/features/features.hpp"
 
@@ -59,13 +59,13 @@ std::vector<Eigen::Vector2d> placesOf(const Features& features, const GridFrame&
 
 }  // namespace
 
-std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
+std::vector<locate::Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
                                  const Features& moving, const GridFrame& moving_frame,
-                                 const SearchSpace& space, const MatchOptions& options) {
+                                 const locate::SearchSpace& space, const MatchOptions& options) {
   const std::vector<Eigen::Vector2d> fixed_at = placesOf(fixed, fixed_frame);
   const std::vector<Eigen::Vector2d> moving_at = placesOf(moving, moving_frame);
-  const Reach reach(space);
-  std::vector<Box2> boxes(moving.size());
+  const paper::Reach reach(space);
+  std::vector<map::Box2> boxes(moving.size());
   std::vector<Nearest> forward(moving.size());
   parallelFor(
       moving.size(),
@@ -85,7 +85,7 @@ std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_f
         }
       },
       16);
-  std::vector<Match> matches;
+  std::vector<locate::Match> matches;
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const Nearest& best = forward[i];
     if (best.index == kNone || backward[best.index].index != i) continue;

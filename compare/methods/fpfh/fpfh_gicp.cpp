@@ -13,7 +13,7 @@ namespace {
 
 /// The cloud's points that lie in `window` of the levelled frame, about `middle` [m].
 PlainPoints pointsIn(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
-                     const Box2& window, const Eigen::Vector2d& middle) {
+                     const map::Box2& window, const Eigen::Vector2d& middle) {
   PlainPoints points;
   for (const Eigen::Vector3f& local : cloud.xyz) {
     const Eigen::Vector3d p = levelled_from_local * local.cast<double>();
@@ -35,9 +35,9 @@ class FpfhGicp : public Method {
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const PeerMaps maps = makePeerMaps(input, outcome.times);
     const Eigen::Vector2d& middle = maps.space.centre;
-    const Box2 moving_box = boundsOf(input.moving, maps.frames.levelled_from_moving);
+    const map::Box2 moving_box = boundsOf(input.moving, maps.frames.levelled_from_moving);
     const PlainPoints fixed = pointsIn(input.fixed, maps.frames.levelled_from_fixed,
-                                       reachableWindow(moving_box, maps.space, 1.0), middle);
+                                       pipeline::reachableWindow(moving_box, maps.space, 1.0), middle);
     const PlainPoints moving =
         pointsIn(input.moving, maps.frames.levelled_from_moving, moving_box, middle);
     const FpfhGicpResult result = registerByFpfhGicp(fixed, moving, parameters_);
@@ -51,7 +51,7 @@ class FpfhGicp : public Method {
         about.matrix()(r, c) = result.transform[static_cast<std::size_t>(4 * r + c)];
       }
     }
-    judge(about, maps.space.uncertainty, outcome);
+    verdict::judge(about, maps.space.uncertainty, outcome);
     const Eigen::Vector3d there(middle.x(), middle.y(), 0.0);
     setLevelledPose(maps, input, Eigen::Translation3d(there) * about * Eigen::Translation3d(-there),
                     outcome);
@@ -59,7 +59,7 @@ class FpfhGicp : public Method {
 
  private:
   /// Whether the motion about the strip's middle is one that the guess allows.
-  static void judge(const Eigen::Affine3d& about, const PriorUncertainty& prior,
+  static void judge(const Eigen::Affine3d& about, const locate::PriorUncertainty& prior,
                     MethodOutcome& outcome) {
     const double shift = about.translation().head<2>().norm();
     const double turn = Eigen::AngleAxisd(about.linear()).angle() * 180.0 / std::numbers::pi;

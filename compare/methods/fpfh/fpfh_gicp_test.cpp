@@ -8,8 +8,8 @@
 namespace agricolmap::compare {
 namespace {
 
-PriorUncertainty nearPrior() {
-  PriorUncertainty prior;
+locate::PriorUncertainty nearPrior() {
+  locate::PriorUncertainty prior;
   prior.translation = 0.5;
   prior.heading_deg = 2.0;
   prior.scale = 0.0;
@@ -22,7 +22,7 @@ TEST(FpfhGicp, IsRightFromNearbyAndTheSameTwice) {
   const MethodInput input = testing::inputOf(testing::smallPair(), error, nearPrior());
   const MethodOutcome outcome = makeFpfhGicp()->run(input);
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
-  const RegistrationErrors errors = testing::errorsOf(outcome, testing::smallPair());
+  const evaluate::RegistrationErrors errors = testing::errorsOf(outcome, testing::smallPair());
   EXPECT_TRUE(errors.within({})) << "RMS " << errors.rms << " m, horizontal "
                                  << errors.rms_horizontal;
   const MethodOutcome again = makeFpfhGicp()->run(input);

@@ -19,10 +19,10 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-Points inSpace(const std::vector<VegetationPoint>& vegetation) {
+Points inSpace(const std::vector<map::VegetationPoint>& vegetation) {
   Points points;
   points.reserve(vegetation.size());
-  for (const VegetationPoint& p : vegetation) {
+  for (const map::VegetationPoint& p : vegetation) {
     points.emplace_back(p.position.x(), p.position.y(), p.height);
   }
   return points;
@@ -102,7 +102,7 @@ class GoIcp : public Method {
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const Stopwatch watch;
     const PeerMaps maps = makePeerMaps(input, outcome.times);
-    const PriorUncertainty& prior = maps.space.uncertainty;
+    const locate::PriorUncertainty& prior = maps.space.uncertainty;
     const PeerPoints vegetation = makePeerPoints(maps, prior.translation + 1.0, options_.most_fixed,
                                                  options_.most_polish, outcome.times);
     Points fixed = inSpace(vegetation.fixed);
@@ -112,7 +112,7 @@ class GoIcp : public Method {
         std::accumulate(all.begin(), all.end(), Eigen::Vector3d::Zero().eval()) /
         static_cast<double>(all.size());
     for (Eigen::Vector3d& p : all) p -= middle;
-    Points few = inSpace(thinToAtMost(vegetation.moving, options_.most_moving));
+    Points few = inSpace(map::thinToAtMost(vegetation.moving, options_.most_moving));
     for (Eigen::Vector3d& p : few) p -= middle;
     // The search moves the middle from where the guess lays it.
     for (Eigen::Vector3d& p : fixed) p -= middle;
@@ -142,7 +142,7 @@ class GoIcp : public Method {
 
  private:
   GoIcpResult search(const DistanceField& field, const NearestPoints& fixed, const Points& moving,
-                     const PriorUncertainty& prior, double time_limit) const {
+                     const locate::PriorUncertainty& prior, double time_limit) const {
     GoIcpSearch domain = options_.search;
     domain.half_rotation =
         std::max(1e-3, std::min(prior.heading_deg, 180.0) * std::numbers::pi / 180.0);

@@ -12,7 +12,7 @@
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/error.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 namespace {
 
 using testing::HasSubstr;
@@ -197,4 +197,4 @@ TEST(Markdown, IsATableWithOneRowPerOption) {
 }
 
 }  // namespace
-}  // namespace agricolmap
+}  // namespace agricolmap::config

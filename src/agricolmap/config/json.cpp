@@ -5,7 +5,7 @@
 
 #include "agricolmap/config/text.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 
 nlohmann::ordered_json toJson(const OptionTable& table) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -26,4 +26,4 @@ nlohmann::ordered_json toJson(const OptionTable& table) {
   return json;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

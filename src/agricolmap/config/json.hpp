@@ -5,9 +5,9 @@
 
 #include "agricolmap/core/options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 
 /// All options with their values, groups as nested objects, in order of declaration.
 nlohmann::ordered_json toJson(const OptionTable& table);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

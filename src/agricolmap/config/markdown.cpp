@@ -4,7 +4,7 @@
 
 #include "agricolmap/config/text.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 namespace {
 
 /// Text that cannot end a cell of a table.
@@ -34,4 +34,4 @@ std::string toMarkdown(const OptionTable& table) {
   return out;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

@@ -5,10 +5,10 @@
 
 #include "agricolmap/core/options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 
 /// One row per option: name, value, unit, limits, meaning. Give a table over default options to
 /// document the defaults.
 std::string toMarkdown(const OptionTable& table);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

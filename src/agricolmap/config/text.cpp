@@ -12,12 +12,12 @@
 
 #include "agricolmap/core/error.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 namespace {
 
 /// The whole of `text` as a number; nothing if it is something else.
 template <typename Number>
-std::optional<Number> parseNumber(std::string_view text) {
+std::optional<Number> io::parseNumber(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -43,7 +43,7 @@ std::optional<bool> parseFlag(std::string_view text) {
 
 template <typename Number>
 std::function<void()> setNumber(const OptionField& field, Number* target, std::string_view text) {
-  const std::optional<Number> value = parseNumber<Number>(text);
+  const std::optional<Number> value = io::parseNumber<Number>(text);
   const auto wide = value ? static_cast<double>(*value) : 0.0;
   if (!value || !std::isfinite(wide) || wide < field.low || wide > field.high) refuse(field, text);
   return [target, value = *value] { *target = value; };
@@ -135,4 +135,4 @@ std::string suggestion(const OptionTable& table, std::string_view path) {
   return closest.empty() ? "" : fmt::format(" (did you mean '{}'?)", closest);
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

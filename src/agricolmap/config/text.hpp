@@ -7,7 +7,7 @@
 
 #include "agricolmap/core/options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 
 /// The value as YAML and the command line write it; parseOption reads back the same bits.
 std::string optionText(const OptionField& field);
@@ -25,4 +25,4 @@ std::string closestPath(const OptionTable& table, std::string_view path);
 /// ` (did you mean 'grid.cell'?)` or, when none is near, nothing.
 std::string suggestion(const OptionTable& table, std::string_view path);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

@@ -14,7 +14,7 @@
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/core/error.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 namespace {
 
 int lineOf(const YAML::Node& node) { return node.Mark().line + 1; }
@@ -147,4 +147,4 @@ std::string dumpYaml(const OptionTable& table) {
   return out;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

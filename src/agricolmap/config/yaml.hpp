@@ -6,7 +6,7 @@
 
 #include "agricolmap/core/options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::config {
 
 /// Sets the options that the file names; the others keep their values. Throws InputError when the
 /// file cannot be read and UsageError, with file, line and remedy, for unknown keys (naming the
@@ -21,4 +21,4 @@ void loadYamlText(const std::string& text, const std::string& name, OptionTable&
 /// back the same values.
 std::string dumpYaml(const OptionTable& table);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::config

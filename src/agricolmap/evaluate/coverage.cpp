@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-namespace agricolmap {
+namespace agricolmap::evaluate {
 namespace {
 
 /// Points that are looked at, spread over the cloud.
@@ -11,10 +11,10 @@ constexpr std::size_t kMostPoints = 20000;
 
 }  // namespace
 
-std::optional<Coverage> coverageOf(const Registration& registration, const Cloud& fixed,
+std::optional<Coverage> coverageOf(const pipeline::Registration& registration, const Cloud& fixed,
                                    const Cloud& moving, const Truth& truth) {
   if (!registration.has_transform || !registration.uncertainty) return std::nullopt;
-  const PoseUncertainty& uncertainty = *registration.uncertainty;
+  const verdict::PoseUncertainty& uncertainty = *registration.uncertainty;
   const Eigen::Affine3d& levelled = registration.frames.levelled_from_fixed;
   const std::size_t step = std::max<std::size_t>(1, moving.size() / kMostPoints);
   using Parameters = Eigen::Matrix<double, 5, 1>;
@@ -47,4 +47,4 @@ std::optional<Coverage> coverageOf(const Registration& registration, const Cloud
   return coverage;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::evaluate

@@ -9,7 +9,7 @@
 #include "agricolmap/evaluate/metrics.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
-namespace agricolmap {
+namespace agricolmap::evaluate {
 
 struct Coverage {
   /// What the true best affine differs by from the found one: the parameters of PoseUncertainty.
@@ -26,7 +26,7 @@ inline constexpr double kChi2At90Of2 = 4.605;
 inline constexpr double kChi2At90Of1 = 2.706;
 
 /// Nothing when the registration has no uncertainty.
-std::optional<Coverage> coverageOf(const Registration& registration, const Cloud& fixed,
+std::optional<Coverage> coverageOf(const pipeline::Registration& registration, const Cloud& fixed,
                                    const Cloud& moving, const Truth& truth);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::evaluate

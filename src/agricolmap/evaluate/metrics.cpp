@@ -10,7 +10,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/transform.hpp"
 
-namespace agricolmap {
+namespace agricolmap::evaluate {
 namespace {
 
 constexpr std::size_t kChunk = 1U << 15;
@@ -83,4 +83,4 @@ RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Trut
   return errors;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::evaluate

@@ -7,7 +7,7 @@
 
 #include "agricolmap/core/cloud.hpp"
 
-namespace agricolmap {
+namespace agricolmap::evaluate {
 
 /// The paper's limits (Sec. V-A), with the project's on the points themselves.
 struct SuccessLimits {
@@ -44,4 +44,4 @@ struct Truth {
 RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Truth& truth,
                                      const Cloud& moving);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::evaluate

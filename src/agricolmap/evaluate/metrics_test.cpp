@@ -5,7 +5,7 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 
-namespace agricolmap {
+namespace agricolmap::evaluate {
 namespace {
 
 Cloud strip() {
@@ -66,4 +66,4 @@ TEST(Metrics, NumbersOfPointsMustAgree) {
 }
 
 }  // namespace
-}  // namespace agricolmap
+}  // namespace agricolmap::evaluate

@@ -5,7 +5,7 @@
 
 #include "agricolmap/core/error.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 
 void describe(OptionTable& table, RegistrationOptions& options) {
   table.flag("geometry_only", options.geometry_only,
@@ -40,7 +40,7 @@ RegistrationOptions preset(const std::string& name) {
   if (name == "paper" || name == "paper-literal") {
     options.association = AssociationKind::kFlow;
     options.refine = RefineKind::kCpd;
-    options.grid.exg = ExgKind::kPlain;
+    options.grid.exg = map::ExgKind::kPlain;
     options.grid.coarsen = false;
     options.hidden.fill = false;
     // One flow from the guess as it is does not reach the 30 % and 11.5° that the paper reports
@@ -53,4 +53,4 @@ RegistrationOptions preset(const std::string& name) {
       fmt::format("unknown preset '{}'; there are: {}", name, fmt::join(presetNames(), ", ")));
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

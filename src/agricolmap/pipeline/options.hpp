@@ -4,23 +4,23 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/1_level/level.hpp"
-#include "agricolmap/2_grid/grid_map.hpp"
-#include "agricolmap/2_grid/hidden_ground.hpp"
-#include "agricolmap/2_grid/signal_map.hpp"
-#include "agricolmap/4_associate/association.hpp"
-#include "agricolmap/4_associate/correlate/correlation_search.hpp"
-#include "agricolmap/4_associate/flow_association.hpp"
-#include "agricolmap/5_affine/estimate_affine.hpp"
-#include "agricolmap/6_refine/cpd.hpp"
-#include "agricolmap/6_refine/dense_refine.hpp"
-#include "agricolmap/6_refine/vegetation.hpp"
-#include "agricolmap/6_refine/vertical.hpp"
-#include "agricolmap/7_verdict/uncertainty.hpp"
-#include "agricolmap/7_verdict/verdict.hpp"
+#include "agricolmap/map/level.hpp"
+#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/map/hidden_ground.hpp"
+#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/locate/association.hpp"
+#include "agricolmap/locate/correlation_search.hpp"
+#include "agricolmap/paper/flow_association.hpp"
+#include "agricolmap/paper/estimate_affine.hpp"
+#include "agricolmap/paper/cpd/cpd.hpp"
+#include "agricolmap/refine/dense_refine.hpp"
+#include "agricolmap/map/vegetation.hpp"
+#include "agricolmap/refine/vertical.hpp"
+#include "agricolmap/verdict/uncertainty.hpp"
+#include "agricolmap/verdict/verdict.hpp"
 #include "agricolmap/core/options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 
 enum class AssociationKind { kCorrelation, kFlow };
 /// kDenseCpd: densely, then the mean of that and CPD from there, where the vegetation can be told
@@ -31,21 +31,21 @@ struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
   RefineKind refine = RefineKind::kDense;
-  PriorUncertainty prior;
-  LevelOptions level;
-  GridOptions grid;
-  SignalOptions signal;
-  CorrelationOptions search;
-  FlowAssociationOptions flow;
-  AffineOptions affine;
-  HiddenGroundOptions hidden;
-  DenseRefineOptions dense;
-  VegetationOptions vegetation;
-  CpdOptions cpd;
-  VerticalOptions vertical;
-  EvidenceOptions evidence;
-  UncertaintyOptions uncertainty;
-  VerdictOptions verdict;
+  locate::PriorUncertainty prior;
+  map::LevelOptions level;
+  map::GridOptions grid;
+  map::SignalOptions signal;
+  locate::CorrelationOptions search;
+  paper::FlowAssociationOptions flow;
+  paper::AffineOptions affine;
+  map::HiddenGroundOptions hidden;
+  refine::DenseRefineOptions dense;
+  map::VegetationOptions vegetation;
+  paper::CpdOptions cpd;
+  refine::VerticalOptions vertical;
+  verdict::EvidenceOptions evidence;
+  verdict::UncertaintyOptions uncertainty;
+  verdict::VerdictOptions verdict;
 };
 void describe(OptionTable& table, RegistrationOptions& options);
 
@@ -56,4 +56,4 @@ std::vector<std::string> presetNames();
 /// Throws UsageError for an unknown name.
 RegistrationOptions preset(const std::string& name);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

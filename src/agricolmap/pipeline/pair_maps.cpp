@@ -9,7 +9,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/transform.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 namespace {
 
 // Beyond this ratio of areas "moving" and "fixed" were swapped, or one is in other units.
@@ -24,7 +24,7 @@ struct PointSum {
 };
 
 struct Box2Sum {
-  Box2 box;
+  map::Box2 box;
   Box2Sum& operator+=(const Box2Sum& other) {
     box.extend(other.box);
     return *this;
@@ -45,26 +45,26 @@ Eigen::Vector3d meanOf(const Cloud& cloud) {
 }
 
 Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                             const PriorUncertainty& uncertainty) {
+                             const locate::PriorUncertainty& uncertainty) {
   if (!uncertainty.anywhere()) return guess;
   return Eigen::Translation3d(meanOf(fixed) - guess * meanOf(moving)) * guess;
 }
 
-void levelFixed(const Cloud& fixed, const LevelOptions& options, PairFrames& frames) {
-  frames.fixed = levelCloud(fixed, Eigen::Affine3d::Identity(), options);
+void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames) {
+  frames.fixed = map::levelCloud(fixed, Eigen::Affine3d::Identity(), options);
   frames.levelled_from_fixed = frames.fixed.levelled_from_guess;
 }
 
 void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                 const LevelOptions& options, PairFrames& frames) {
+                 const map::LevelOptions& options, PairFrames& frames) {
   // In double and about the origins, so that UTM coordinates cancel before anything is float.
   const Eigen::Affine3d guess_local =
       Eigen::Translation3d(-fixed.origin) * guess * Eigen::Translation3d(moving.origin);
-  frames.moving = levelCloud(moving, guess_local, options);
+  frames.moving = map::levelCloud(moving, guess_local, options);
   frames.levelled_from_moving = frames.moving.levelled_from_guess * guess_local;
 }
 
-Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
+map::Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
   return parallelSum<Box2Sum>(
              cloud.size(), 1U << 16, {},
              [&](std::size_t begin, std::size_t end) {
@@ -78,8 +78,8 @@ Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
       .box;
 }
 
-void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const Box2& fixed_box,
-                             const Box2& moving_box) {
+void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map::Box2& fixed_box,
+                             const map::Box2& moving_box) {
   if (moving_box.volume() <= kMaxAreaRatio * fixed_box.volume()) return;
   throw InputError(fmt::format(
       "{}: covers {:.3g} x {:.3g} m, far more than the fixed map {} with {:.3g} x {:.3g} m; are "
@@ -88,9 +88,9 @@ void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const Box2
       fixed_box.sizes().x(), fixed_box.sizes().y()));
 }
 
-SearchSpace searchSpace(const Box2& moving, const PairFrames& frames,
-                        const PriorUncertainty& uncertainty) {
-  SearchSpace space;
+locate::SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
+                        const locate::PriorUncertainty& uncertainty) {
+  locate::SearchSpace space;
   space.uncertainty = uncertainty;
   space.centre = moving.center();
   const Eigen::Matrix2d axes = frames.levelled_from_moving.linear().topLeftCorner<2, 2>();
@@ -98,14 +98,14 @@ SearchSpace searchSpace(const Box2& moving, const PairFrames& frames,
   return space;
 }
 
-Box2 reachableWindow(const Box2& moving, const SearchSpace& space, double rim) {
+map::Box2 reachableWindow(const map::Box2& moving, const locate::SearchSpace& space, double rim) {
   const double heading = space.uncertainty.heading_deg * std::numbers::pi / 180.0;
-  const double stretch = std::exp(logScaleLimit(space.uncertainty));
-  Box2 window;
+  const double stretch = std::exp(locate::logScaleLimit(space.uncertainty));
+  map::Box2 window;
   for (const double yaw : {-heading, 0.0, heading}) {
     for (int corner = 0; corner < 4; ++corner) {
       const Eigen::Vector2d arm =
-          moving.corner(static_cast<Box2::CornerType>(corner)) - space.centre;
+          moving.corner(static_cast<map::Box2::CornerType>(corner)) - space.centre;
       window.extend((space.centre + stretch * (rotation2(yaw) * arm)).eval());
     }
   }
@@ -115,4 +115,4 @@ Box2 reachableWindow(const Box2& moving, const SearchSpace& space, double rim) {
   return window;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

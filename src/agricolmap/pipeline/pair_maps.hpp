@@ -3,19 +3,19 @@
 
 #include <Eigen/Geometry>
 
-#include "agricolmap/1_level/level.hpp"
-#include "agricolmap/2_grid/grid_map.hpp"
-#include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/map/level.hpp"
+#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/cloud.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 
 /// Frames of a pair. Local frames are the clouds' own axes about their double origins.
 struct PairFrames {
   Eigen::Affine3d levelled_from_fixed;   ///< fixed local → fixed levelled [m]
   Eigen::Affine3d levelled_from_moving;  ///< moving local → initial guess → moving levelled [m]
-  Levelling fixed;
-  Levelling moving;
+  map::Levelling fixed;
+  map::Levelling moving;
 };
 
 /// Mean of the cloud's points in its file's coordinates [m].
@@ -24,26 +24,26 @@ Eigen::Vector3d meanOf(const Cloud& cloud);
 /// Where the guess says nothing about the place, the middles of the clouds are laid together, so
 /// that all that follows counts from there, however far apart the files' coordinates are.
 Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                             const PriorUncertainty& uncertainty);
+                             const locate::PriorUncertainty& uncertainty);
 
 /// Levels the fixed cloud.
-void levelFixed(const Cloud& fixed, const LevelOptions& options, PairFrames& frames);
+void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames);
 /// Levels the moving cloud under a guess (moving file → fixed file coordinates).
 void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                 const LevelOptions& options, PairFrames& frames);
+                 const map::LevelOptions& options, PairFrames& frames);
 
 /// Horizontal bounds of the cloud in the levelled frame.
-Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
+map::Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
 
 /// Throws InputError when the moving map's bounds are far larger than the fixed map's.
-void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const Box2& fixed_box,
-                             const Box2& moving_box);
+void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map::Box2& fixed_box,
+                             const map::Box2& moving_box);
 
 /// What is searched when the moving map has these bounds.
-SearchSpace searchSpace(const Box2& moving, const PairFrames& frames,
-                        const PriorUncertainty& uncertainty);
+locate::SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
+                        const locate::PriorUncertainty& uncertainty);
 
 /// The part of the fixed frame that a moving map of these bounds can reach, and `rim` more [m].
-Box2 reachableWindow(const Box2& moving, const SearchSpace& space, double rim);
+map::Box2 reachableWindow(const map::Box2& moving, const locate::SearchSpace& space, double rim);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string_view>
 
-#include "agricolmap/pipeline/straighten.hpp"
+#include "agricolmap/verdict/straighten.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 namespace {
 
 /// What a search that was not accepted is followed by, an ambiguous one, too: among places that fit
@@ -26,13 +26,13 @@ constexpr std::array<Attempt, 3> kAttempts = {
 /// One block may come to agree by chance.
 constexpr std::size_t kOddBlock = 1;
 
-std::unique_ptr<Association> makeAssociation(const RegistrationOptions& options) {
+std::unique_ptr<locate::Association> makeAssociation(const RegistrationOptions& options) {
   if (options.association == AssociationKind::kFlow) {
-    return std::make_unique<FlowAssociation>(options.flow);
+    return std::make_unique<paper::FlowAssociation>(options.flow);
   }
-  CorrelationOptions search = options.search;
+  locate::CorrelationOptions search = options.search;
   search.signal = options.signal;
-  return std::make_unique<CorrelationSearch>(search);
+  return std::make_unique<locate::CorrelationSearch>(search);
 }
 
 double count(const std::vector<std::pair<std::string, double>>& counts, std::string_view name) {
@@ -42,8 +42,8 @@ double count(const std::vector<std::pair<std::string, double>>& counts, std::str
   return 0.0;
 }
 
-int rankOf(Status status) {
-  return status == Status::kAccepted ? 2 : status == Status::kAmbiguous ? 1 : 0;
+int rankOf(verdict::Status status) {
+  return status == verdict::Status::kAccepted ? 2 : status == verdict::Status::kAmbiguous ? 1 : 0;
 }
 
 }  // namespace
@@ -60,10 +60,10 @@ bool better(const PairOutcome& a, const PairOutcome& b) {
 }
 
 bool supersedes(const PairOutcome& later, const PairOutcome& earlier, double rival) {
-  if (earlier.verdict.status != Status::kAmbiguous) return better(later, earlier);
+  if (earlier.verdict.status != verdict::Status::kAmbiguous) return better(later, earlier);
   double highest = earlier.evidence.significance;
   for (const RefinedPose& other : earlier.rivals) highest = std::max(highest, other.significance);
-  return later.verdict.status != Status::kRejected && highest < rival * later.evidence.significance;
+  return later.verdict.status != verdict::Status::kRejected && highest < rival * later.evidence.significance;
 }
 
 std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
@@ -87,7 +87,7 @@ std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
                     {"moving_cells", static_cast<double>(moving_.filled)},
                     {"attempts", static_cast<double>(index + 1)}};
   // 3.–5. Data association: descriptors, flow and vote (Sec. III-B), or the correlation search.
-  const std::unique_ptr<Association> own = association_ ? nullptr : makeAssociation(now);
+  const std::unique_ptr<locate::Association> own = association_ ? nullptr : makeAssociation(now);
   outcome.association =
       (association_ ? association_ : own.get())->associate(fixed_, moving_, space_, times_);
   outcome.counts.insert(outcome.counts.end(), outcome.association.counts.begin(),
@@ -107,7 +107,7 @@ PairOutcome PairPlacer::search() const {
     if (!next) break;
     last = next;
     if (!best || supersedes(*next, *best, options_.verdict.rival)) best = std::move(next);
-    if (best->verdict.status == Status::kAccepted) break;
+    if (best->verdict.status == verdict::Status::kAccepted) break;
   }
   // How often it was tried, whichever of them was best.
   for (auto& [name, value] : best->counts) {
@@ -116,7 +116,7 @@ PairOutcome PairPlacer::search() const {
   return *std::move(best);
 }
 
-PairOutcome PairPlacer::settle(const Placement& placement, std::vector<RefinedPose> rivals) const {
+PairOutcome PairPlacer::settle(const locate::Placement& placement, std::vector<RefinedPose> rivals) const {
   PairOutcome outcome;
   outcome.association.placements = {placement};
   RefineOutcome refined =
@@ -133,7 +133,7 @@ PairPlacer::Judged PairPlacer::judgePose(const Eigen::Affine2d& pose,
   const Fit fit = refinement_.fit(pose);
   judged.correlation = fit.correlation;
   judged.vertical =
-      times_.run("vertical", [&] { return fitVertical(fixed_, moving_, pose, options_.vertical); });
+      times_.run("vertical", [&] { return refine::fitVertical(fixed_, moving_, pose, options_.vertical); });
   times_.run("verdict", [&] {
     judged.finding = refinement_.examine(pose, refined, judged.vertical.residual);
     judged.finding.overlap = fit.overlap;
@@ -144,15 +144,15 @@ PairPlacer::Judged PairPlacer::judgePose(const Eigen::Affine2d& pose,
 // 7d. The paper's own refinement stays as it is.
 std::optional<bool> PairPlacer::straighten(const RefineOutcome& refined, Judged& judged) const {
   if (options_.refine != RefineKind::kDense && options_.refine != RefineKind::kDenseCpd) return {};
-  const auto straight = straightenedPose(judged.finding.evidence, space_.scale_axes);
+  const auto straight = verdict::straightenedPose(judged.finding.evidence, space_.scale_axes);
   if (!straight) return {};
   Judged other = judgePose(*straight, refined);
   if (other.finding.evidence.agreeing <= judged.finding.evidence.agreeing + kOddBlock) return false;
   // Blocks place themselves by centimetres at best: what they lay straight must also fit better.
   bool changed = false;
   const auto take = [&](Judged& next) {
-    const Evidence& now = next.finding.evidence;
-    const Evidence& before = judged.finding.evidence;
+    const verdict::Evidence& now = next.finding.evidence;
+    const verdict::Evidence& before = judged.finding.evidence;
     if (now.agreeing < before.agreeing || now.significance <= before.significance ||
         next.correlation <= judged.correlation) {
       return;
@@ -173,7 +173,7 @@ std::optional<bool> PairPlacer::straighten(const RefineOutcome& refined, Judged&
 void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const {
   outcome.has_transform = refined.best.has_value();
   if (!refined.best) {
-    outcome.verdict = rejectBecause(refined.failure);
+    outcome.verdict = verdict::rejectBecause(refined.failure);
     return;
   }
   outcome.rivals = refined.rivals;
@@ -186,13 +186,13 @@ void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome
   outcome.correlation = judged.correlation;
   outcome.vertical = judged.vertical;
   // 8. Verdict.
-  outcome.verdict = judge(judged.finding, space_, options_.verdict);
+  outcome.verdict = verdict::judge(judged.finding, space_, options_.verdict);
   outcome.evidence = std::move(judged.finding.evidence);
   outcome.uncertainty = std::move(judged.finding.uncertainty);
-  if (outcome.vertical.status != VerticalStatus::kOk) {
-    outcome.verdict = rejectBecause("the heights of the two maps do not fit one another");
+  if (outcome.vertical.status != refine::VerticalStatus::kOk) {
+    outcome.verdict = verdict::rejectBecause("the heights of the two maps do not fit one another");
   }
-  if (outcome.verdict.status == Status::kAmbiguous) {
+  if (outcome.verdict.status == verdict::Status::kAmbiguous) {
     for (const RefinedPose& rival : refined.rivals) {
       if (rival.significance < options_.verdict.rival * outcome.evidence.significance) break;
       outcome.alternatives.push_back({.pose = rival.pose, .significance = rival.significance});
@@ -200,4 +200,4 @@ void PairPlacer::judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome
   }
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

@@ -11,7 +11,7 @@
 #include "agricolmap/pipeline/options.hpp"
 #include "agricolmap/pipeline/refinement.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 
 /// Another place where the moving map fits.
 struct Alternative {
@@ -23,18 +23,18 @@ struct Alternative {
 
 /// Where a moving map was placed, in the levelled frames. `has_transform == false`: nowhere.
 struct PairOutcome {
-  Verdict verdict;
+  verdict::Verdict verdict;
   bool has_transform = false;
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
-  VerticalResult vertical;
-  Evidence evidence;
-  std::optional<PoseUncertainty> uncertainty;  ///< nothing when too few blocks can be compared
+  refine::VerticalResult vertical;
+  verdict::Evidence evidence;
+  std::optional<verdict::PoseUncertainty> uncertainty;  ///< nothing when too few blocks can be compared
   /// Other places, listed when the status is ambiguous, most significant first.
   std::vector<Alternative> alternatives;
   double overlap = 0.0;      ///< share of the moving map's cells that the fixed map sees
   double correlation = 0.0;  ///< of the dense signals at the end
   std::vector<std::pair<std::string, double>> counts;  ///< per stage, in order
-  AssociationResult association;
+  locate::AssociationResult association;
   std::vector<RefinedPose> rivals;  ///< other places that held when refined
 };
 
@@ -50,9 +50,9 @@ class PairPlacer {
  public:
   /// All references must outlive this. `association` takes the place of the one that the options
   /// name; nullptr: theirs.
-  PairPlacer(const GridMap& fixed, const GridMap& moving, const SearchSpace& space,
+  PairPlacer(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
              const RegistrationOptions& options, StageTimes& times,
-             const Association* association = nullptr)
+             const locate::Association* association = nullptr)
       : fixed_(fixed),
         moving_(moving),
         space_(space),
@@ -67,14 +67,14 @@ class PairPlacer {
   /// after `before`.
   std::optional<PairOutcome> searchOnce(std::size_t attempt, const PairOutcome* before) const;
   /// From a placement that is known already, with its rivals.
-  PairOutcome settle(const Placement& placement, std::vector<RefinedPose> rivals) const;
+  PairOutcome settle(const locate::Placement& placement, std::vector<RefinedPose> rivals) const;
 
  private:
   /// A pose with all that the verdict rests on.
   struct Judged {
     Eigen::Affine2d pose;
-    VerticalResult vertical;
-    Finding finding;
+    refine::VerticalResult vertical;
+    verdict::Finding finding;
     double correlation;
   };
   Judged judgePose(const Eigen::Affine2d& pose, const RefineOutcome& refined) const;
@@ -82,13 +82,13 @@ class PairPlacer {
   std::optional<bool> straighten(const RefineOutcome& refined, Judged& judged) const;
   void judgeOutcome(const RefineOutcome& refined, PairOutcome& outcome) const;
 
-  const GridMap& fixed_;
-  const GridMap& moving_;
-  const SearchSpace& space_;
+  const map::GridMap& fixed_;
+  const map::GridMap& moving_;
+  const locate::SearchSpace& space_;
   const RegistrationOptions& options_;
   StageTimes& times_;
-  const Association* association_;
+  const locate::Association* association_;
   PoseRefinement refinement_;
 };
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "agricolmap/6_refine/basins.hpp"
+#include "agricolmap/refine/basins.hpp"
 #include "agricolmap/core/parallel.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 namespace {
 
 // Cells of a level in grid cells. With the default grid: 12 and 6 cm, at which all placements are
@@ -33,11 +33,11 @@ constexpr double kVegetationRim = 2.0;
 constexpr double kMostDifference = 0.08;
 constexpr double kLeastCorrelation = 0.96;
 
-GridMap withoutHidden(const GridMap& moving, const RegistrationOptions& options) {
-  HiddenGroundOptions hidden = options.hidden;
+map::GridMap withoutHidden(const map::GridMap& moving, const RegistrationOptions& options) {
+  map::HiddenGroundOptions hidden = options.hidden;
   // The RGB term reads colours, which the hidden ground is not given.
-  if (options.signal.term == DataTerm::kRgb) hidden.fill = false;
-  return withHiddenGround(moving, hidden);
+  if (options.signal.term == map::DataTerm::kRgb) hidden.fill = false;
+  return map::withHiddenGround(moving, hidden);
 }
 
 RefineOutcome failed(std::string why) {
@@ -48,45 +48,45 @@ RefineOutcome failed(std::string why) {
 
 }  // namespace
 
-PoseRefinement::PoseRefinement(const GridMap& fixed, const GridMap& moving,
-                               const SearchSpace& space, const RegistrationOptions& options)
+PoseRefinement::PoseRefinement(const map::GridMap& fixed, const map::GridMap& moving,
+                               const locate::SearchSpace& space, const RegistrationOptions& options)
     : fixed_(fixed),
       moving_(moving),
       filled_(withoutHidden(moving, options)),
       space_(space),
       options_(options) {
   for (const int factor : kFactors) {
-    levels_.push_back({makeSignalMap(fixed, factor, options.signal),
-                       makeSignalMap(moving, factor, options.signal)});
+    levels_.push_back({map::makeSignalMap(fixed, factor, options.signal),
+                       map::makeSignalMap(moving, factor, options.signal)});
   }
-  meter_ = std::make_unique<EvidenceMeter>(levels_[kRankingLevel].fixed,
+  meter_ = std::make_unique<verdict::EvidenceMeter>(levels_[kRankingLevel].fixed,
                                            levels_[kRankingLevel].moving, options.evidence);
 }
 
 std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level, const RefinedPose& start,
                                                     bool across_basins) const {
   const auto refine = across_basins ? refineAcrossBasins : refineDense;
-  const DenseRefineResult dense = refine(level.fixed, level.moving, start.pose, options_.dense);
-  if (dense.status != RefineStatus::kConverged) return std::nullopt;
+  const refine::DenseRefineResult dense = refine(level.fixed, level.moving, start.pose, options_.dense);
+  if (dense.status != refine::RefineStatus::kConverged) return std::nullopt;
   return RefinedPose{dense.fixed_from_moving, start.significance, dense.overlap};
 }
 
-GridMap PoseRefinement::fixedUnder(const Eigen::Affine2d& pose, double rim) const {
+map::GridMap PoseRefinement::fixedUnder(const Eigen::Affine2d& pose, double rim) const {
   const GridFrame& frame = moving_.frame;
-  Box2 window;
+  map::Box2 window;
   for (const double row : {-0.5, frame.rows - 0.5}) {
     for (const double col : {-0.5, frame.cols - 0.5}) window.extend(pose * frame.centre(row, col));
   }
   window.extend((window.min() - Eigen::Vector2d::Constant(rim)).eval());
   window.extend((window.max() + Eigen::Vector2d::Constant(rim)).eval());
-  return croppedMap(fixed_, window);
+  return map::croppedMap(fixed_, window);
 }
 
 PoseRefinement::Level PoseRefinement::levelUnder(const Eigen::Affine2d& pose, int factor) const {
   // Room for the high-pass, and for what a level may move the pose by.
   const double rim = 1.5 * options_.signal.high_pass + 8.0 * factor * moving_.frame.cell;
-  return {makeSignalMap(fixedUnder(pose, rim), factor, options_.signal),
-          makeSignalMap(filled_, factor, options_.signal)};
+  return {map::makeSignalMap(fixedUnder(pose, rim), factor, options_.signal),
+          map::makeSignalMap(filled_, factor, options_.signal)};
 }
 
 RefineOutcome PoseRefinement::rank(const std::vector<std::optional<RefinedPose>>& poses) const {
@@ -156,9 +156,9 @@ RefineOutcome PoseRefinement::refineDensely(
 RefineOutcome PoseRefinement::refineByPoints(
     const RefinedPose& start, std::vector<std::pair<std::string, double>>& counts) const {
   // What lies far from the strip is of no use, and on a large map costs more than all the rest.
-  const GridMap around = fixedUnder(start.pose, kVegetationRim);
-  const Vegetation fixed = extractVegetation(around, options_.vegetation);
-  const Vegetation moving = extractVegetation(moving_, options_.vegetation);
+  const map::GridMap around = fixedUnder(start.pose, kVegetationRim);
+  const map::Vegetation fixed = map::extractVegetation(around, options_.vegetation);
+  const map::Vegetation moving = map::extractVegetation(moving_, options_.vegetation);
   for (const auto& [map, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
     if (map->points.empty()) {
       return failed(fmt::format("vegetation cannot be told from soil in the {} map: {}", name,
@@ -166,12 +166,12 @@ RefineOutcome PoseRefinement::refineByPoints(
     }
   }
   // Heights start where the maps agree on the ground; the vertical stage has the last word.
-  const VerticalResult vertical = fitVertical(fixed_, moving_, start.pose, options_.vertical);
-  CpdPose pose;
+  const refine::VerticalResult vertical = refine::fitVertical(fixed_, moving_, start.pose, options_.vertical);
+  paper::CpdPose pose;
   pose.plane = start.pose;
-  pose.height_offset = vertical.status == VerticalStatus::kOk ? vertical.offset : 0.0;
-  const CpdResult result =
-      refineByCpd(fixed.points, moving.points, pose, options_.cpd, space_.scale_axes);
+  pose.height_offset = vertical.status == refine::VerticalStatus::kOk ? vertical.offset : 0.0;
+  const paper::CpdResult result =
+      paper::refineByCpd(fixed.points, moving.points, pose, options_.cpd, space_.scale_axes);
   counts.emplace_back("fixed_vegetation_points", static_cast<double>(fixed.points.size()));
   counts.emplace_back("moving_vegetation_points", static_cast<double>(moving.points.size()));
   counts.emplace_back("cpd_iterations", static_cast<double>(result.iterations));
@@ -192,7 +192,7 @@ bool PoseRefinement::agrees(const RefinedPose& points, const RefinedPose& dense)
          fit(points.pose).correlation >= kLeastCorrelation * fit(dense.pose).correlation;
 }
 
-RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, StageTimes& times,
+RefineOutcome PoseRefinement::choose(const std::vector<locate::Placement>& placements, StageTimes& times,
                                      std::vector<std::pair<std::string, double>>& counts) const {
   if (placements.empty()) {
     return failed("the data association found nothing coherent within the prior's limits");
@@ -200,8 +200,8 @@ RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, S
   std::vector<std::optional<RefinedPose>> poses(placements.size());
   times.run("affine", [&] {
     for (std::size_t i = 0; i < placements.size(); ++i) {
-      const AffineEstimate fit =
-          estimateAffine(placements[i].matches, space_.scale_axes, options_.affine);
+      const paper::AffineEstimate fit =
+          paper::estimateAffine(placements[i].matches, space_.scale_axes, options_.affine);
       if (fit.ok()) poses[i] = RefinedPose{fit.fixed_from_moving};
     }
   });
@@ -230,15 +230,15 @@ RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, S
   });
 }
 
-Finding PoseRefinement::examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
+verdict::Finding PoseRefinement::examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
                                 double height_residual) const {
-  Finding finding;
+  verdict::Finding finding;
   finding.pose = pose;
   for (const RefinedPose& rival : outcome.rivals) finding.rivals.push_back(rival.significance);
   const double highest = finding.rivals.empty() ? 0.0 : finding.rivals.front();
   finding.evidence = meter_->measure(pose, space_, highest);
   const Level level = levelUnder(pose, kBlockFactor);
-  finding.uncertainty = estimateUncertainty(level.fixed, level.moving, pose, finding.evidence,
+  finding.uncertainty = verdict::estimateUncertainty(level.fixed, level.moving, pose, finding.evidence,
                                             space_, height_residual, options_.uncertainty);
   return finding;
 }
@@ -251,10 +251,10 @@ Fit PoseRefinement::fit(const Eigen::Affine2d& pose) const {
       const std::size_t i = level.moving.weight.index(r, c);
       if (level.moving.weight[i] <= 0.0F) continue;
       seen += 1.0;
-      const SignalSample look = sampleSignal(level.fixed, pose * level.moving.frame.centre(r, c));
+      const map::SignalSample look = map::sampleSignal(level.fixed, pose * level.moving.frame.centre(r, c));
       if (look.weight <= 0.0F) continue;
       shared += 1.0;
-      for (int k = 0; k < kSignalChannels; ++k) {
+      for (int k = 0; k < map::kSignalChannels; ++k) {
         const auto f = static_cast<double>(look.value[k]);
         const auto m = static_cast<double>(level.moving.channel[k][i]);
         product += f * m;
@@ -269,4 +269,4 @@ Fit PoseRefinement::fit(const Eigen::Affine2d& pose) const {
   return fit;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

@@ -12,7 +12,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/pipeline/unknown_scale.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 namespace {
 
 void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options) {
@@ -28,7 +28,7 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
 }
 
 /// Fills the transforms and their parts from the poses in the levelled frames.
-void compose(const Cloud& fixed, const Cloud& moving, const VerticalOptions& options,
+void compose(const Cloud& fixed, const Cloud& moving, const refine::VerticalOptions& options,
              Registration& result) {
   const auto localOf = [&](const Eigen::Affine3d& levelled) -> Eigen::Affine3d {
     return result.frames.levelled_from_fixed.inverse() * levelled *
@@ -38,11 +38,11 @@ void compose(const Cloud& fixed, const Cloud& moving, const VerticalOptions& opt
     return Eigen::Translation3d(fixed.origin) * local * Eigen::Translation3d(-moving.origin);
   };
   for (Alternative& other : result.alternatives) {
-    const VerticalResult vertical =
-        fitVertical(result.fixed_map, result.moving_map, other.pose, options);
-    other.fixed_from_moving = inFiles(localOf(liftPose(other.pose, vertical)));
+    const refine::VerticalResult vertical =
+        refine::fitVertical(result.fixed_map, result.moving_map, other.pose, options);
+    other.fixed_from_moving = inFiles(localOf(refine::liftPose(other.pose, vertical)));
   }
-  const Eigen::Affine3d levelled = liftPose(result.pose, result.vertical);
+  const Eigen::Affine3d levelled = refine::liftPose(result.pose, result.vertical);
   result.local_fixed_from_moving = localOf(levelled);
   result.fixed_from_moving = inFiles(result.local_fixed_from_moving);
   const Eigen::Matrix2d& axes = result.space.scale_axes;
@@ -58,7 +58,7 @@ void compose(const Cloud& fixed, const Cloud& moving, const VerticalOptions& opt
 class Registrar {
  public:
   Registrar(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
-            StageTimes& times, const Association* association)
+            StageTimes& times, const locate::Association* association)
       : fixed_(fixed),
         moving_(moving),
         options_(options),
@@ -87,7 +87,7 @@ class Registrar {
       std::optional<PairOutcome> next = placer(trial).searchOnce(0, nullptr);
       if (!next || (best && !better(*next, best->outcome))) continue;
       best = Found{factor, scaled, result_.frames, *std::move(next)};
-      if (best->outcome.verdict.status == Status::kAccepted) break;
+      if (best->outcome.verdict.status == verdict::Status::kAccepted) break;
     }
     if (!best) {
       throw InputError(fmt::format(
@@ -125,11 +125,11 @@ class Registrar {
     times_.run("grid", [&] {
       chooseCells();
       // Room for the high-pass.
-      const Box2 window =
+      const map::Box2 window =
           options_.prior.scale_unknown
               ? fixed_box_
               : reachableWindow(moving_box_, result_.space, 2.0 * options_.signal.high_pass);
-      result_.fixed_map = makeGridMap(fixed_, result_.frames.levelled_from_fixed,
+      result_.fixed_map = map::makeGridMap(fixed_, result_.frames.levelled_from_fixed,
                                       window.intersection(fixed_box_), grid_);
       result_.fixed_map.ground_deviation = result_.frames.fixed.roughness;
       if (!options_.prior.scale_unknown) gridMoving();
@@ -138,11 +138,11 @@ class Registrar {
 
   /// Cells that both clouds fill.
   void chooseCells() {
-    double spacing = pointSpacing(fixed_, result_.frames.levelled_from_fixed);
+    double spacing = map::pointSpacing(fixed_, result_.frames.levelled_from_fixed);
     if (!options_.prior.scale_unknown) {
-      spacing = std::max(spacing, pointSpacing(moving_, result_.frames.levelled_from_moving));
+      spacing = std::max(spacing, map::pointSpacing(moving_, result_.frames.levelled_from_moving));
     }
-    grid_ = coarsened(options_.grid, spacing);
+    grid_ = map::coarsened(options_.grid, spacing);
   }
 
   void levelAndBound(const Eigen::Affine3d& guess) {
@@ -155,7 +155,7 @@ class Registrar {
 
   void gridMoving() {
     result_.moving_map =
-        makeGridMap(moving_, result_.frames.levelled_from_moving, moving_box_, grid_);
+        map::makeGridMap(moving_, result_.frames.levelled_from_moving, moving_box_, grid_);
     result_.moving_map.ground_deviation = result_.frames.moving.roughness;
   }
 
@@ -191,7 +191,7 @@ class Registrar {
     Eigen::Affine2d plane = Eigen::Affine2d::Identity();
     plane.linear() = then_from_now.linear().topLeftCorner<2, 2>();
     plane.translation() = then_from_now.translation().head<2>();
-    Placement placement;
+    locate::Placement placement;
     placement.score = found.outcome.evidence.significance;
     for (const double u : {0.0, 0.5, 1.0}) {
       for (const double v : {0.0, 0.5, 1.0}) {
@@ -222,11 +222,11 @@ class Registrar {
   const Cloud& moving_;
   const RegistrationOptions& options_;
   StageTimes& times_;
-  const Association* association_;
+  const locate::Association* association_;
   Registration result_;
-  GridOptions grid_;
-  Box2 fixed_box_;
-  Box2 moving_box_;
+  map::GridOptions grid_;
+  map::Box2 fixed_box_;
+  map::Box2 moving_box_;
   double scale_ = 1.0;  ///< that the moving file was enlarged by
 };
 
@@ -234,7 +234,7 @@ class Registrar {
 
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                             const RegistrationOptions& chosen, StageTimes& times,
-                            const Association* association) {
+                            const locate::Association* association) {
   checkOptions(chosen);
   RegistrationOptions options = chosen;
   requireColours(fixed, moving, options);
@@ -245,11 +245,11 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
         "translation and no --scale-unknown, or use --association correlation");
   }
   if (options.geometry_only) {
-    options.signal.term = DataTerm::kHeight;
-    options.flow.describe.term = DataTerm::kHeight;
+    options.signal.term = map::DataTerm::kHeight;
+    options.flow.describe.term = map::DataTerm::kHeight;
   }
   Registrar registrar(fixed, moving, options, times, association);
   return options.prior.scale_unknown ? registrar.runAtUnknownScale(guess) : registrar.run(guess);
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

@@ -14,7 +14,7 @@
 #include "agricolmap/pipeline/pair_maps.hpp"
 #include "agricolmap/pipeline/placing.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 
 /// What a registration found. `status == kRejected` with `has_transform == false`: no answer at
 /// all.
@@ -34,9 +34,9 @@ struct Registration : PairOutcome {
 
   // Kept for pictures and reports.
   PairFrames frames;
-  GridMap fixed_map;
-  GridMap moving_map;
-  SearchSpace space;
+  map::GridMap fixed_map;
+  map::GridMap moving_map;
+  locate::SearchSpace space;
 };
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.
@@ -46,6 +46,6 @@ struct Registration : PairOutcome {
 /// otherwise; nullptr: theirs.
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                             const RegistrationOptions& options, StageTimes& times,
-                            const Association* association = nullptr);
+                            const locate::Association* association = nullptr);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

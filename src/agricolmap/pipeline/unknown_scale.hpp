@@ -4,16 +4,16 @@
 
 #include <vector>
 
-#include "agricolmap/2_grid/grid_map.hpp"
-#include "agricolmap/4_associate/association.hpp"
+#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/locate/association.hpp"
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 
 /// Factors from 0.1 to 10 such that what lies between them is within the scales that a search
 /// covers, nearest to 1 first; then those half way between, for files whose two axes differ.
 /// Factors at which a moving map of these bounds would be too large for the fixed map, or too small
 /// to hold anything that could be recognised, are left out.
-std::vector<double> scaleFactors(const Box2& moving, const Box2& fixed,
-                                 const PriorUncertainty& uncertainty);
+std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed,
+                                 const locate::PriorUncertainty& uncertainty);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

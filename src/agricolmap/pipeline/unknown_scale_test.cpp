@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
-namespace agricolmap {
+namespace agricolmap::pipeline {
 namespace {
 
-Box2 box(double width, double height) {
-  return Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d(width, height));
+map::Box2 box(double width, double height) {
+  return map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d(width, height));
 }
 
 TEST(ScaleFactors, LeaveNoGapBetweenATenthAndTen) {
-  const PriorUncertainty uncertainty;
+  const locate::PriorUncertainty uncertainty;
   std::vector<double> factors = scaleFactors(box(10.0, 2.2), box(1000.0, 1000.0), uncertainty);
   EXPECT_EQ(factors.front(), 1.0);
   std::sort(factors.begin(), factors.end());
-  const double reach = std::exp(logScaleLimit(uncertainty));
+  const double reach = std::exp(locate::logScaleLimit(uncertainty));
   EXPECT_GE(factors.back() * reach, 10.0);
   for (std::size_t i = 1; i < factors.size(); ++i) {
     EXPECT_LE(factors[i] / factors[i - 1], reach * reach);
@@ -34,4 +34,4 @@ TEST(ScaleFactors, LeaveOutWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace agricolmap
+}  // namespace agricolmap::pipeline

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "agricolmap/4_associate/flow/test_field.hpp"
+#include "agricolmap/map/test_field.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
 namespace agricolmap::testing {
@@ -16,7 +16,7 @@ struct TestStrip {
 };
 
 /// Empties the cells outside the turned strip about `centre`.
-inline void cutStrip(GridMap& map, const TestStrip& strip, const Eigen::Vector2d& centre) {
+inline void cutStrip(map::GridMap& map, const TestStrip& strip, const Eigen::Vector2d& centre) {
   const Eigen::Matrix2d to_strip = rotation2(-strip.heading);
   map.filled = 0;
   for (int row = 0; row < map.frame.rows; ++row) {
@@ -31,10 +31,10 @@ inline void cutStrip(GridMap& map, const TestStrip& strip, const Eigen::Vector2d
 }
 
 /// True matches with 2 cm of noise and as many wrong ones.
-inline void addMatches(Registration& result, const TestStrip& strip,
+inline void addMatches(pipeline::Registration& result, const TestStrip& strip,
                        const Eigen::Vector2d& centre) {
   Random random(5);
-  Placement winner;
+  locate::Placement winner;
   for (double u = -0.475; u < 0.5; u += 0.05) {
     for (double v = -0.45; v < 0.5; v += 0.1) {
       const Eigen::Vector2d moving =
@@ -47,7 +47,7 @@ inline void addMatches(Registration& result, const TestStrip& strip,
     }
   }
   winner.score = static_cast<double>(winner.matches.size());
-  Placement loser;
+  locate::Placement loser;
   loser.matches = {{centre, centre}};
   result.association.placements = {loser, winner};
   result.association.counts = {
@@ -59,13 +59,13 @@ inline void addMatches(Registration& result, const TestStrip& strip,
 }
 
 /// Blocks along the strip, one in six of which disagrees.
-inline void addEvidence(Registration& result, const TestStrip& strip,
+inline void addEvidence(pipeline::Registration& result, const TestStrip& strip,
                         const Eigen::Vector2d& centre) {
   Random random(6);
   const int count = static_cast<int>(strip.length / 1.2);
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector2d along(((i + 0.5) / count - 0.5) * strip.length, 0.0);
-    BlockEvidence block;
+    verdict::BlockEvidence block;
     block.place = result.pose * (centre + rotation2(strip.heading) * along);
     block.agrees = i % 6 != 2;
     const double size = block.agrees ? 0.04 : 0.3;
@@ -79,21 +79,21 @@ inline void addEvidence(Registration& result, const TestStrip& strip,
 }
 
 /// An accepted registration with the true answer.
-inline Registration testRegistration(const TestStrip& strip = {}) {
+inline pipeline::Registration testRegistration(const TestStrip& strip = {}) {
   TestField field;
   field.size = strip.field;
-  const Truth truth = growField(field);
+  const evaluate::Truth truth = growField(field);
   const Eigen::Vector2d centre = Eigen::Vector2d::Constant(0.48 * strip.field);
-  Registration result;
+  pipeline::Registration result;
   result.pose = guessError(centre, {0.9, -0.6}, 0.06, 1.08, 0.94);
   result.fixed_map =
-      viewOf(truth, field, Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(strip.field)),
+      viewOf(truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(strip.field)),
              Eigen::Affine2d::Identity(), 0.02, 1);
   const double c = std::abs(std::cos(strip.heading));
   const double s = std::abs(std::sin(strip.heading));
   const Eigen::Vector2d half(0.5 * (c * strip.length + s * strip.width),
                              0.5 * (s * strip.length + c * strip.width));
-  result.moving_map = viewOf(truth, field, Box2(centre - half, centre + half), result.pose, 0.1, 2);
+  result.moving_map = viewOf(truth, field, map::Box2(centre - half, centre + half), result.pose, 0.1, 2);
   cutStrip(result.moving_map, strip, centre);
   result.space.centre = centre;
   result.has_transform = true;
@@ -112,12 +112,12 @@ inline Registration testRegistration(const TestStrip& strip = {}) {
   result.tilt = {0.01, -0.02};
   result.overlap = 0.97;
   result.correlation = 0.68;
-  result.vertical.status = VerticalStatus::kOk;
+  result.vertical.status = refine::VerticalStatus::kOk;
   result.vertical.residual = 0.013;
   result.vertical.cells = 12345;
   addMatches(result, strip, centre);
   addEvidence(result, strip, centre);
-  result.verdict = {Status::kAccepted,
+  result.verdict = {verdict::Status::kAccepted,
                     {"the peak is 2.40 times the highest other one",
                      "4 of 5 blocks, placed alone, agree with the whole"},
                     0.98};

@@ -10,10 +10,10 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/simulate/drift.hpp"
+#include "agricolmap/simulate/field/drift.hpp"
 #include "agricolmap/simulate/geotag.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 namespace {
 
@@ -177,4 +177,4 @@ SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vect
   return pair;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

@@ -2,11 +2,11 @@
 // turning points of the field into files with their truth.
 #pragma once
 
-#include "agricolmap/simulate/render.hpp"
+#include "agricolmap/simulate/field/render.hpp"
 #include "agricolmap/simulate/simulate.hpp"
-#include "agricolmap/simulate/views.hpp"
+#include "agricolmap/simulate/field/views.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 /// Middle of the strip in the field and direction of travel.
 struct StripPlace {
@@ -51,4 +51,4 @@ Cloud cloudFromAbove(FieldPoints above, const Eigen::Vector3d& base);
 SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vector3d& base,
                              const StripPlace& place, FieldPoints below, std::uint64_t seed);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

@@ -5,7 +5,7 @@
 
 #include "agricolmap/core/random.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, double across_rows,
                   std::uint64_t seed) {
@@ -53,4 +53,4 @@ Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, d
   return tag;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

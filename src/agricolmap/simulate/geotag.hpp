@@ -5,7 +5,7 @@
 
 #include "agricolmap/simulate/simulation_options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 /// UGV file → UAV file.
 struct Geotag {
@@ -18,4 +18,4 @@ struct Geotag {
 Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, double across_rows,
                   std::uint64_t seed);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

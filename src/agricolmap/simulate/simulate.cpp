@@ -12,9 +12,9 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/simulate/assemble.hpp"
-#include "agricolmap/simulate/render.hpp"
+#include "agricolmap/simulate/field/render.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 namespace {
 
@@ -118,4 +118,4 @@ SimulatedPair simulatePair(const SimulationOptions& options) {
   return SimulatedPair{std::move(strip), std::move(field).takeUav()};
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
-#include "agricolmap/simulate/field_model.hpp"
+#include "agricolmap/simulate/field/field_model.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 /// The robot's cloud and where it belongs.
 struct SimulatedStrip {
@@ -64,4 +64,4 @@ class SimulatedField {
 /// outside its limits or the strip does not fit into the field.
 SimulatedPair simulatePair(const SimulationOptions& options);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

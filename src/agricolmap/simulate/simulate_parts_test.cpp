@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agricolmap/simulate/drift.hpp"
-#include "agricolmap/simulate/light.hpp"
-#include "agricolmap/simulate/noise.hpp"
+#include "agricolmap/simulate/field/drift.hpp"
+#include "agricolmap/simulate/field/light.hpp"
+#include "agricolmap/simulate/field/noise.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 namespace {
 
 TEST(Drift, IsAsLargeAsAskedForAndZeroInTheMiddle) {
@@ -67,4 +67,4 @@ TEST(Light, SunMovesFromEastToWestAndCastsShadowsAway) {
 }
 
 }  // namespace
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

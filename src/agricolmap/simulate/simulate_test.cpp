@@ -9,7 +9,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 namespace {
 
 /// A field small enough for tests.
@@ -378,4 +378,4 @@ TEST(Simulate, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

@@ -1,6 +1,6 @@
 #include "agricolmap/simulate/simulation_options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 void describe(OptionTable& t, FieldOptions& o) {
   t.number("width", o.width, 2.0, 200.0, "m", "east-west extent of the UAV map");
@@ -180,4 +180,4 @@ SimulationOptions cropPreset(Crop crop) {
   return o;
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

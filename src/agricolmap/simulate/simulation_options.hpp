@@ -4,7 +4,7 @@
 
 #include "agricolmap/core/options.hpp"
 
-namespace agricolmap {
+namespace agricolmap::simulate {
 
 /// The crops of the paper's data set (Sec. IV-A) and maize, a tall one. "20m" is the beet field
 /// flown at twice the height.
@@ -134,4 +134,4 @@ void describe(OptionTable& table, SimulationOptions& options);
 /// Usual layouts and sensors for a crop.
 SimulationOptions cropPreset(Crop crop);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::simulate

@@ -1,0 +1,129 @@
+// Damaged files must give an InputError or a cloud, never anything else.
+#include <lzf.h>
+#include <spdlog/spdlog.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <vector>
+
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/test_support.hpp"
+
+namespace agricolmap::io {
+namespace {
+
+using test::append;
+
+/// A file in memory: rewriting one on disk thousands of times waits for the disk.
+class MemoryFile {
+ public:
+  MemoryFile() : fd_(::memfd_create("cloud", MFD_CLOEXEC)) {
+    if (fd_ < 0) throw OutputError("no file in memory");
+  }
+  ~MemoryFile() { ::close(fd_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::filesystem::path write(const std::string& content) const {
+    const auto size = static_cast<ssize_t>(content.size());
+    if (::ftruncate(fd_, 0) != 0 || ::pwrite(fd_, content.data(), content.size(), 0) != size) {
+      throw OutputError("no space in memory");
+    }
+    return "/proc/self/fd/" + std::to_string(fd_);
+  }
+
+ private:
+  int fd_;
+};
+
+std::vector<std::string> validFiles() {
+  std::vector<std::string> files;
+  const std::string vertex =
+      "element vertex 20\nproperty float x\nproperty double y\nproperty float z\nproperty uchar "
+      "red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string face = "element face 2\nproperty list uchar int vertex_indices\n";
+  std::string plain;
+  std::string listed;
+  std::string text;
+  std::string columns;
+  for (int i = 0; i < 20; ++i) {
+    std::string point;
+    append(point, 0.5F * static_cast<float>(i));
+    append(point, 1.25 * i);
+    append(point, 3.0F);
+    point += "rgb";
+    plain += point;
+    listed += std::string("\x02pq", 3) + point;
+    text += std::to_string(i) + " 1.5 2 10 20 30\n";
+  }
+  for (int i = 0; i < 60; ++i) append(columns, static_cast<float>(i % 20));
+  std::string faces;
+  for (int i = 0; i < 2; ++i) faces += std::string("\x03", 1) + std::string(12, '\1');
+  const std::string le = "ply\nformat binary_little_endian 1.0\n";
+  files.push_back(le + vertex + face + "end_header\n" + plain + faces);
+  files.push_back(le + face + vertex + "end_header\n" + faces + plain);
+  files.push_back("ply\nformat binary_big_endian 1.0\n" + vertex + "end_header\n" + plain);
+  files.push_back("ply\nformat ascii 1.0\n" + vertex + "end_header\n" + text);
+  std::string with_list = vertex;
+  with_list.insert(with_list.find("property"), "property list uchar char l\n");
+  files.push_back(le + with_list + "end_header\n" + listed);
+  const std::string pcd =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 20\nHEIGHT 1\nPOINTS "
+      "20\nDATA ";
+  files.push_back(pcd + "binary\n" + columns);
+  std::vector<char> buffer(1024);
+  const unsigned size =
+      lzf_compress(columns.data(), static_cast<unsigned>(columns.size()), buffer.data(), 1024);
+  std::string compressed;
+  append(compressed, static_cast<std::uint32_t>(size));
+  append(compressed, static_cast<std::uint32_t>(columns.size()));
+  files.push_back(pcd + "binary_compressed\n" + compressed + std::string(buffer.data(), size));
+  return files;
+}
+
+std::string damage(std::string file, Random& random) {
+  const std::uint64_t kind = random.below(3);
+  if (kind == 0) return file.substr(0, random.below(file.size()));
+  const std::size_t header = std::min<std::size_t>(file.size(), 260);
+  const std::uint64_t changes = 1 + random.below(4);
+  for (std::uint64_t i = 0; i < changes; ++i) {
+    const std::size_t at = random.below(random.chance(0.7) ? header : file.size());
+    if (kind == 1) {
+      file[at] = static_cast<char>(random.below(256));
+    } else {
+      file.insert(at, 1, "0123456789 -\n"[random.below(13)]);
+    }
+  }
+  return file;
+}
+
+TEST(CloudFuzz, DamagedFilesAreReadOrRefused) {
+  const MemoryFile memory;
+  const auto level = spdlog::get_level();
+  spdlog::set_level(spdlog::level::off);
+  Random random(11);
+  int read = 0;
+  int refused = 0;
+  for (const std::string& file : validFiles()) {
+    ASSERT_EQ(readCloud(memory.write(file)).size(), 20U);
+    for (int i = 0; i < 1500; ++i) {
+      const auto path = memory.write(damage(file, random));
+      try {
+        const Cloud cloud = readCloud(path);
+        ++read;
+        ASSERT_FALSE(cloud.empty());
+        for (const Eigen::Vector3f& p : cloud.xyz) ASSERT_TRUE(p.allFinite());
+      } catch (const InputError&) {
+        ++refused;
+      }
+    }
+  }
+  spdlog::set_level(level);
+  EXPECT_GT(read, 500);
+  EXPECT_GT(refused, 2000);
+}
+
+}  // namespace
+}  // namespace agricolmap::io

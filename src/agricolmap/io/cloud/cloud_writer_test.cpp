@@ -1,0 +1,79 @@
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/test_support.hpp"
+
+namespace agricolmap::io {
+namespace {
+
+using test::expectError;
+using test::TempDir;
+
+Cloud randomCloud(std::size_t points, const Eigen::Vector3d& origin) {
+  Random random(7);
+  Cloud cloud;
+  cloud.origin = origin;
+  for (std::size_t i = 0; i < points; ++i) {
+    cloud.xyz.emplace_back(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-1, 1));
+    cloud.rgb.push_back({static_cast<std::uint8_t>(random.below(256)),
+                         static_cast<std::uint8_t>(random.below(256)),
+                         static_cast<std::uint8_t>(random.below(256))});
+  }
+  return cloud;
+}
+
+TEST(CloudWriter, RoundTripsUtmCoordinates) {
+  const TempDir dir;
+  const Cloud cloud = randomCloud(200000, {500000, 5000000, 300});
+  writePly(dir / "out.ply", cloud, {.comments = {"made by a test"}});
+  const Cloud back = readCloud(dir / "out.ply");
+  ASSERT_EQ(back.size(), cloud.size());
+  EXPECT_EQ(back.rgb, cloud.rgb);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    worst = std::max(worst, (back.filePoint(i) - cloud.filePoint(i)).norm());
+  }
+  EXPECT_LT(worst, 4e-6);  // float spacing at 40 m
+}
+
+TEST(CloudWriter, AppliesTheTransformInDouble) {
+  const TempDir dir;
+  const Cloud cloud = randomCloud(1000, {500000, 5000000, 300});
+  Eigen::Affine3d target_from_file(Eigen::Translation3d(3.0, -2.0, 0.5));
+  target_from_file.rotate(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()))
+      .scale(Eigen::Vector3d(1.1, 0.9, 1.0));
+  writePly(dir / "out.ply", cloud, target_from_file);
+  const Cloud back = readCloud(dir / "out.ply");
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    ASSERT_LT((back.filePoint(i) - target_from_file * cloud.filePoint(i)).norm(), 1e-5);
+  }
+}
+
+TEST(CloudWriter, WritesFloatsOnlyWhereTheySuffice) {
+  const TempDir dir;
+  const Cloud local = randomCloud(100, Eigen::Vector3d::Zero());
+  writePly(dir / "out.ply", local, {.float_coordinates = true, .colours = false});
+  const Cloud back = readCloud(dir / "out.ply");
+  EXPECT_FALSE(back.hasColour());
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    EXPECT_LT((back.filePoint(i) - local.filePoint(i)).norm(), 1e-5);
+  }
+  const Cloud far = randomCloud(100, {500000, 0, 0});
+  expectError<UsageError>([&] { writePly(dir / "far.ply", far, {.float_coordinates = true}); },
+                          {"far.ply", "write doubles"});
+  EXPECT_THROW(writePly(dir / "far.ply", far, {.comments = {"two\nlines"}}), UsageError);
+}
+
+TEST(CloudWriter, NoticesFailures) {
+  const Cloud cloud = randomCloud(1000, Eigen::Vector3d::Zero());
+  expectError<OutputError>([&] { writePly("/dev/full", cloud); }, {"/dev/full", "No space"});
+  expectError<OutputError>([&] { writeText("/dev/full", "x"); }, {"No space"});
+  expectError<OutputError>([&] { writePly("/proc/none/out.ply", cloud); }, {"cannot be created"});
+  const TempDir dir;
+  expectError<OutputError>([&] { writePly(dir.path(), cloud); }, {"directory"});
+}
+
+}  // namespace
+}  // namespace agricolmap::io

@@ -1,0 +1,13 @@
+// Reading PCD; use `readCloud`.
+#pragma once
+
+#include <string>
+
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/text/mapped_file.hpp"
+
+namespace agricolmap::io {
+
+Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options);
+
+}  // namespace agricolmap::io

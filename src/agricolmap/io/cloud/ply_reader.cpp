@@ -1,0 +1,302 @@
+#include "agricolmap/io/cloud/ply_reader.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/interrupt.hpp"
+#include "agricolmap/io/cloud/ascii_source.hpp"
+#include "agricolmap/io/cloud/ply_header.hpp"
+#include "agricolmap/io/text/text.hpp"
+
+namespace agricolmap::io {
+namespace {
+
+using Names = std::array<std::string_view, 3>;
+constexpr std::array<Names, 3> kColourNames{
+    {{"red", "green", "blue"}, {"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}}};
+
+/// Indices of three properties of the vertex.
+using Indices = std::array<std::size_t, 3>;
+
+std::optional<Indices> findAll(const PlyElement& vertex, const Names& names) {
+  Indices indices{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto it =
+        std::find_if(vertex.properties.begin(), vertex.properties.end(),
+                     [&](const PlyProperty& p) { return p.name == names[c] && !p.list_count; });
+    if (it == vertex.properties.end()) return std::nullopt;
+    indices[c] = static_cast<std::size_t>(it - vertex.properties.begin());
+  }
+  return indices;
+}
+
+/// The vertex element and what its properties mean.
+struct VertexLayout {
+  const PlyElement* vertex = nullptr;
+  Indices xyz{};
+  std::optional<Indices> colour;
+
+  std::array<ScalarType, 3> types(const Indices& indices) const {
+    const auto& p = vertex->properties;
+    return {p[indices[0]].type, p[indices[1]].type, p[indices[2]].type};
+  }
+  ColourKind colourKind() const {
+    return colour ? colourKindOf(types(*colour)) : ColourKind::kNone;
+  }
+};
+
+VertexLayout vertexLayout(const PlyHeader& header, const std::string& name,
+                          const ReadOptions& options) {
+  const auto it = std::find_if(header.elements.begin(), header.elements.end(),
+                               [](const PlyElement& e) { return e.name == "vertex"; });
+  if (it == header.elements.end()) {
+    throw InputError(fmt::format("{}: the header has no element 'vertex'", name));
+  }
+  VertexLayout layout;
+  layout.vertex = &*it;
+  const auto xyz = findAll(*it, {"x", "y", "z"});
+  if (!xyz) {
+    throw InputError(fmt::format("{}: its vertices lack one of the properties x, y, z", name));
+  }
+  if (it->count == 0) throw InputError(fmt::format("{}: empty cloud: 0 vertices", name));
+  layout.xyz = *xyz;
+  if (!options.colours) return layout;
+  for (const Names& names : kColourNames) {
+    if (!layout.colour) layout.colour = findAll(*it, names);
+  }
+  const auto is_red = [](const PlyProperty& p) { return p.name == "red" || p.name == "green"; };
+  if (!layout.colour && std::any_of(it->properties.begin(), it->properties.end(), is_red)) {
+    spdlog::warn("{}: its colours are incomplete (red, green and blue are needed); ignored", name);
+  }
+  return layout;
+}
+
+/// Walks over binary items whose lists make their sizes differ.
+class Walker {
+ public:
+  Walker(const PlyElement& element, const std::byte* end, bool swap, const std::string& name)
+      : element_(element), end_(end), swap_(swap), name_(name) {}
+
+  /// End of the item at `from`. With `at`, also where each of its properties begins.
+  const std::byte* next(const std::byte* from, std::uint64_t index,
+                        std::vector<const std::byte*>* at = nullptr) const {
+    for (std::size_t p = 0; p < element_.properties.size(); ++p) {
+      const PlyProperty& property = element_.properties[p];
+      if (at != nullptr) (*at)[p] = from;
+      from = take(from, 1, sizeOf(property.list_count.value_or(property.type)), index);
+      if (!property.list_count) continue;
+      const double length =
+          loadScalar(from - sizeOf(*property.list_count), *property.list_count, swap_);
+      if (length < 0.0) {
+        throw InputError(fmt::format("{}: {} {}: list '{}' has length {}", name_, element_.name,
+                                     index + 1, property.name, length));
+      }
+      from = take(from, static_cast<std::uint64_t>(length), sizeOf(property.type), index);
+    }
+    return from;
+  }
+
+ private:
+  const std::byte* take(const std::byte* from, std::uint64_t count, std::size_t size,
+                        std::uint64_t index) const {
+    if (count > static_cast<std::size_t>(end_ - from) / size) {
+      throw InputError(
+          fmt::format("{}: truncated: the header announces {} of element '{}', the "
+                      "file ends inside number {}",
+                      name_, element_.count, element_.name, index + 1));
+    }
+    return from + count * size;
+  }
+
+  const PlyElement& element_;
+  const std::byte* end_;
+  bool swap_;
+  const std::string& name_;
+};
+
+/// Binary vertices with lists among their properties.
+class ListedSource : public PointSource {
+ public:
+  ListedSource(const VertexLayout& layout, std::span<const std::byte> data, bool swap,
+               const std::string& name)
+      : layout_(layout),
+        swap_(swap),
+        walker_(*layout.vertex, data.data() + data.size(), swap, name) {
+    const std::byte* from = data.data();
+    for (std::uint64_t i = 0; i < layout.vertex->count; ++i) {
+      if (i % kChunk == 0) {
+        throwIfInterrupted();
+        starts_.push_back(from);
+      }
+      from = walker_.next(from, i);
+    }
+    end_ = from;
+  }
+  std::size_t points() const override { return layout_.vertex->count; }
+  std::size_t chunks() const override { return starts_.size(); }
+  std::size_t firstPoint(std::size_t chunk) const override { return chunk * kChunk; }
+  ColourKind colourKind() const override { return layout_.colourKind(); }
+  bool floatCoordinates() const override {
+    return layout_.vertex->properties[layout_.xyz[0]].type == ScalarType::kFloat32;
+  }
+  /// End of the last vertex.
+  const std::byte* end() const { return end_; }
+
+  void decode(std::size_t chunk, const Sink& sink) const override {
+    const auto& properties = layout_.vertex->properties;
+    std::vector<const std::byte*> at(properties.size());
+    const auto value = [&](std::size_t p) { return loadScalar(at[p], properties[p].type, swap_); };
+    const ColourKind kind = colourKind();
+    const std::byte* from = starts_[chunk];
+    const std::size_t end = std::min(points(), (chunk + 1) * kChunk);
+    PointBlock block;
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      from = walker_.next(from, i, &at);
+      const std::size_t k = block.count++;
+      for (std::size_t axis = 0; axis < 3; ++axis) block.xyz[axis][k] = value(layout_.xyz[axis]);
+      if (kind == ColourKind::kByte) {
+        const auto byte = [&](std::size_t c) {
+          return std::to_integer<std::uint8_t>(*at[(*layout_.colour)[c]]);
+        };
+        block.rgb[k] = {byte(0), byte(1), byte(2)};
+      } else if (kind != ColourKind::kNone) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          block.wide[c][k] = static_cast<float>(value((*layout_.colour)[c]));
+        }
+      }
+      if (block.count == PointBlock::kCapacity || i + 1 == end) {
+        sink(block);
+        block.count = 0;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kChunk = 1U << 12;
+  VertexLayout layout_;
+  bool swap_;
+  Walker walker_;
+  std::vector<const std::byte*> starts_;
+  const std::byte* end_ = nullptr;
+};
+
+void warnAboutRest(const PlyHeader& header, const PlyElement& vertex, std::size_t bytes,
+                   const std::string& name) {
+  const bool last =
+      std::all_of(header.elements.begin() + (&vertex - header.elements.data()) + 1,
+                  header.elements.end(), [](const PlyElement& e) { return e.count == 0; });
+  if (last && bytes > 0) spdlog::warn("{}: {} bytes after the last point, ignored", name, bytes);
+}
+
+BinaryColumns columnsOf(const VertexLayout& layout, const std::byte* data, bool swap) {
+  BinaryColumns columns;
+  columns.points = layout.vertex->count;
+  const auto column = [&](std::size_t index) {
+    std::size_t offset = 0;
+    for (std::size_t p = 0; p < index; ++p) offset += sizeOf(layout.vertex->properties[p].type);
+    return Column{data + offset, layout.vertex->fixedBytes(), layout.vertex->properties[index].type,
+                  swap};
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) columns.xyz[axis] = column(layout.xyz[axis]);
+  if (layout.colour) {
+    const Indices& c = *layout.colour;
+    columns.colour = {column(c[0]), column(c[1]), column(c[2])};
+  }
+  return columns;
+}
+
+/// The data behind the elements that come before the vertices.
+std::span<const std::byte> skipTo(const PlyHeader& header, const PlyElement& vertex,
+                                  std::span<const std::byte> data, bool swap,
+                                  const std::string& name) {
+  for (const PlyElement* e = header.elements.data(); e != &vertex; ++e) {
+    const std::size_t each = e->fixedBytes();
+    if (each == 0 || e->count == 0) continue;
+    if (e->count > data.size() / each) {
+      throw InputError(fmt::format(
+          "{}: truncated: the header announces {} of element '{}', only {} bytes follow", name,
+          e->count, e->name, data.size()));
+    }
+    if (!e->hasLists()) {
+      data = data.subspan(e->count * each);
+      continue;
+    }
+    const Walker walker(*e, data.data() + data.size(), swap, name);
+    const std::byte* from = data.data();
+    for (std::uint64_t i = 0; i < e->count; ++i) from = walker.next(from, i);
+    data = data.subspan(static_cast<std::size_t>(from - data.data()));
+  }
+  return data;
+}
+
+Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
+                 std::span<const std::byte> data, const std::string& name) {
+  const bool swap = header.format == PlyFormat::kBigEndian;
+  data = skipTo(header, *layout.vertex, data, swap, name);
+  const PlyElement& vertex = *layout.vertex;
+  const std::size_t each = vertex.fixedBytes();
+  if (vertex.count > data.size() / each) {
+    throw InputError(fmt::format(
+        "{}: truncated: the header announces {} points of {}{} bytes, but only {} bytes follow "
+        "({} points)",
+        name, vertex.count, vertex.hasLists() ? "at least " : "", each, data.size(),
+        data.size() / each));
+  }
+  if (vertex.hasLists()) {
+    const ListedSource source(layout, data, swap, name);
+    warnAboutRest(header, vertex,
+                  static_cast<std::size_t>(data.data() + data.size() - source.end()), name);
+    return assembleCloud(source, name);
+  }
+  warnAboutRest(header, vertex, data.size() - vertex.count * each, name);
+  return assembleCloud(BinarySource(columnsOf(layout, data.data(), swap)), name);
+}
+
+std::vector<AsciiColumn> asciiColumns(const VertexLayout& layout) {
+  using Use = AsciiColumn::Use;
+  std::vector<AsciiColumn> columns;
+  for (const PlyProperty& p : layout.vertex->properties) {
+    columns.push_back({p.list_count ? Use::kList : Use::kSkip});
+  }
+  constexpr std::array kAxes{Use::kX, Use::kY, Use::kZ};
+  constexpr std::array kChannels{Use::kRed, Use::kGreen, Use::kBlue};
+  for (std::size_t c = 0; c < 3; ++c) {
+    columns[layout.xyz[c]].use = kAxes[c];
+    if (layout.colour) columns[(*layout.colour)[c]].use = kChannels[c];
+  }
+  return columns;
+}
+
+Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string_view text,
+                const std::string& name) {
+  for (const PlyElement* e = header.elements.data(); e != layout.vertex; ++e) {
+    for (std::uint64_t i = 0; i < e->count && !e->properties.empty(); ++i) {
+      while (!text.empty() && splitWords(takeLine(text)).empty()) {
+      }
+      if (text.empty()) break;  // counted with the vertices' lines
+    }
+  }
+  const AsciiSource source(
+      {name, text, layout.vertex->count, asciiColumns(layout), layout.colourKind()});
+  const bool last = layout.vertex == &header.elements.back();
+  if (last && source.extraLines() > 0) {
+    spdlog::warn("{}: {} lines after the last point, ignored", name, source.extraLines());
+  }
+  return assembleCloud(source, name);
+}
+
+}  // namespace
+
+Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+  const PlyHeader header = parsePlyHeader(file.text(), name);
+  const VertexLayout layout = vertexLayout(header, name, options);
+  if (header.format == PlyFormat::kAscii) {
+    return readAscii(header, layout, file.text().substr(header.bytes), name);
+  }
+  return readBinary(header, layout, file.bytes().subspan(header.bytes), name);
+}
+
+}  // namespace agricolmap::io

@@ -1,0 +1,108 @@
+// What the file formats have in common: points decoded in chunks, made into a Cloud.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "agricolmap/core/cloud.hpp"
+
+namespace agricolmap::io {
+
+enum class ScalarType {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64,
+};
+std::size_t sizeOf(ScalarType type);
+bool isFloating(ScalarType type);
+
+/// How a file stores colours.
+enum class ColourKind {
+  kNone,
+  kByte,         ///< 0–255
+  kWideInteger,  ///< 0–255 or 0–65535, whichever holds the file's largest value
+  kWideFloat,    ///< 0–1, or 0–255 when the file's largest value is above 1
+};
+
+/// A few decoded points; small enough to stay in the cache.
+struct PointBlock {
+  static constexpr std::size_t kCapacity = 512;
+  std::size_t count = 0;
+  std::array<std::array<double, kCapacity>, 3> xyz;  ///< file coordinates [m]
+  std::array<Rgb, kCapacity> rgb;                    ///< ColourKind::kByte
+  std::array<std::array<float, kCapacity>, 3> wide;  ///< the wide kinds
+};
+
+/// The points of an open file. Chunks can be decoded from several threads at once.
+class PointSource {
+ public:
+  using Sink = std::function<void(const PointBlock&)>;
+
+  virtual ~PointSource() = default;
+  virtual std::size_t points() const = 0;
+  virtual std::size_t chunks() const = 0;
+  /// Index of the chunk's first point.
+  virtual std::size_t firstPoint(std::size_t chunk) const = 0;
+  /// Hands the chunk's points to `sink`, block after block in file order.
+  virtual void decode(std::size_t chunk, const Sink& sink) const = 0;
+  virtual ColourKind colourKind() const = 0;
+  /// Whether coordinates are stored as 32-bit floats, which are coarse far from zero.
+  virtual bool floatCoordinates() const = 0;
+};
+
+/// One value per point, `stride` bytes apart.
+struct Column {
+  const std::byte* base = nullptr;
+  std::size_t stride = 0;
+  ScalarType type = ScalarType::kFloat32;
+  bool swap = false;  ///< bytes in the other order than this machine's
+};
+
+/// Points of fixed size in memory: PLY binary, PCD binary and uncompressed PCD columns.
+struct BinaryColumns {
+  std::size_t points = 0;
+  std::array<Column, 3> xyz;
+  std::optional<std::array<Column, 3>> colour;
+  std::optional<Column> packed;  ///< 0x00RRGGBB in 4 bytes; not together with `colour`
+};
+
+class BinarySource : public PointSource {
+ public:
+  explicit BinarySource(const BinaryColumns& columns) : columns_(columns) {}
+  std::size_t points() const override { return columns_.points; }
+  std::size_t chunks() const override { return (columns_.points + kChunk - 1) / kChunk; }
+  std::size_t firstPoint(std::size_t chunk) const override { return chunk * kChunk; }
+  void decode(std::size_t chunk, const Sink& sink) const override;
+  ColourKind colourKind() const override;
+  bool floatCoordinates() const override;
+
+ private:
+  static constexpr std::size_t kChunk = 1U << 14;
+  void loadColours(std::size_t begin, PointBlock& block) const;
+  BinaryColumns columns_;
+};
+
+/// The kind of three stored colour channels.
+ColourKind colourKindOf(const std::array<ScalarType, 3>& types);
+
+/// One stored value as a double.
+double loadScalar(const std::byte* from, ScalarType type, bool swap);
+
+/// Reads all points. The origin is the first usable point, rounded to whole metres. Points with a
+/// coordinate or colour that is not finite, or farther than 1e8 m from zero, are dropped and
+/// counted. Throws InputError naming `name` when no point is left or the colours fit no known
+/// range.
+Cloud assembleCloud(const PointSource& source, const std::string& name);
+
+}  // namespace agricolmap::io

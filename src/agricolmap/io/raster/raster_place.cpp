@@ -1,0 +1,83 @@
+#include "agricolmap/io/raster/raster_place.hpp"
+
+#include <fmt/format.h>
+#include <ogr_spatialref.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "agricolmap/core/error.hpp"
+
+namespace agricolmap::io {
+namespace {
+
+constexpr double kMetreTolerance = 1e-6;
+
+OGRSpatialReference horizontalCrs(const RasterPlace& place, const std::string& name) {
+  OGRSpatialReference crs;
+  if (crs.importFromWkt(place.crs.c_str()) != OGRERR_NONE) {
+    throw InputError(fmt::format("{}: its coordinate system cannot be understood", name));
+  }
+  if (crs.IsCompound() != 0) crs.StripVertical();
+  return crs;
+}
+
+}  // namespace
+
+void checkMetres(const std::string& name, const RasterPlace& place) {
+  if (!place.world_from_pixel) {
+    throw InputError(fmt::format(
+        "{}: is not georeferenced; give it its place with gdal_translate -a_ullr and -a_srs",
+        name));
+  }
+  if (std::abs(place.world_from_pixel->linear().determinant()) <= 0.0) {
+    throw InputError(fmt::format("{}: its georeference is degenerate", name));
+  }
+  if (place.crs.empty()) return;
+  const OGRSpatialReference crs = horizontalCrs(place, name);
+  if (crs.IsGeographic() != 0 || crs.IsGeocentric() != 0) {
+    throw InputError(fmt::format(
+        "{}: its coordinates are degrees, not metres; reproject it: gdalwarp -t_srs EPSG:326<zone> "
+        "(UTM north; 327<zone> south)",
+        name));
+  }
+  const char* unit = nullptr;
+  const double metres = crs.GetLinearUnits(&unit);
+  if (std::abs(metres - 1.0) > kMetreTolerance) {
+    throw InputError(
+        fmt::format("{}: its coordinates are in units of {} m ({}); reproject it to metres with "
+                    "gdalwarp -t_srs",
+                    name, metres, unit == nullptr ? "unnamed" : unit));
+  }
+}
+
+void checkSameCrs(const std::string& name, const RasterPlace& place, const std::string& other_name,
+                  const RasterPlace& other_place) {
+  if (place.crs.empty() || other_place.crs.empty()) {
+    spdlog::warn(
+        "{}: coordinate system not given; taken as metres in the same one for both rasters",
+        place.crs.empty() ? name : other_name);
+    return;
+  }
+  const OGRSpatialReference one = horizontalCrs(place, name);
+  const OGRSpatialReference other = horizontalCrs(other_place, other_name);
+  const char* const lenient[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT",
+                                 nullptr};
+  if (one.IsSame(&other, lenient) == 0) {
+    throw InputError(fmt::format(
+        "{} ({}) and {} ({}) have different coordinate systems; reproject one with gdalwarp -t_srs",
+        name, one.GetName(), other_name, other.GetName()));
+  }
+}
+
+std::string extentOf(const RasterPlace& place, int rows, int cols) {
+  Eigen::AlignedBox2d box;
+  for (const auto& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(cols, 0),
+                             Eigen::Vector2d(0, rows), Eigen::Vector2d(cols, rows)}) {
+    box.extend(*place.world_from_pixel * corner);
+  }
+  return fmt::format("{:.1f}..{:.1f}, {:.1f}..{:.1f}", box.min().x(), box.max().x(), box.min().y(),
+                     box.max().y());
+}
+
+}  // namespace agricolmap::io

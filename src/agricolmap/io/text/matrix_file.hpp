@@ -1,0 +1,34 @@
+// Transforms as text: `target_from_source` as a 4×4 matrix, row-major, one row a line.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+
+#include "agricolmap/io/output/output_path.hpp"
+
+namespace agricolmap::io {
+
+/// Reads 16 numbers: finite, last row 0 0 0 1, invertible. Commas, brackets and `#` comments are
+/// fine. Throws InputError.
+Eigen::Affine3d readMatrix(const std::filesystem::path& path);
+
+/// Writes 17 significant digits: what is read back is the same to the bit. `comment` goes first,
+/// each of its lines behind a `#`.
+void writeMatrix(const OutputPath& path, const Eigen::Affine3d& target_from_source,
+                 const std::string& comment = "");
+
+/// Ground truth as published with the paper's data: 12 numbers of a 3×4 affine, row-major, then the
+/// relative scale errors of x and y, as they stand in the file.
+struct PublishedTruth {
+  Eigen::Affine3d affine = Eigen::Affine3d::Identity();
+  Eigen::Vector2d relative_scale = Eigen::Vector2d::Zero();
+};
+
+/// Reads 12 + 2 numbers. Throws InputError.
+PublishedTruth readPublishedTruth(const std::filesystem::path& path);
+
+/// Reads either of the two, told apart by how many numbers there are.
+Eigen::Affine3d readTransform(const std::filesystem::path& path);
+
+}  // namespace agricolmap::io

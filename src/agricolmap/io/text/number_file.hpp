@@ -1,0 +1,23 @@
+// Small text files of numbers: matrices and offsets.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace agricolmap::io {
+
+struct NumberFile {
+  std::vector<double> numbers;
+  std::vector<std::size_t> lines;  ///< line of each number, from 1
+};
+
+/// All numbers of a file, finite, separated by blanks, commas, semicolons or brackets; `#` begins a
+/// comment. Throws InputError with file and line.
+NumberFile readNumbers(const std::filesystem::path& path);
+
+/// With as many digits as it takes to read the same double again.
+std::string exactText(double value);
+
+}  // namespace agricolmap::io

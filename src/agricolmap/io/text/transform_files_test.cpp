@@ -1,0 +1,113 @@
+#include <numbers>
+
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/text/offset_file.hpp"
+#include "agricolmap/io/test_support.hpp"
+
+namespace agricolmap::io {
+namespace {
+
+using test::expectError;
+using test::TempDir;
+
+TEST(OffsetFile, FollowsTheDocumentedConvention) {
+  const TempDir dir;
+  const auto apply = [&](const std::string& text, const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return readOffset(dir.write("offset.xyz", text)) * p;
+  };
+  EXPECT_TRUE(apply("# home\n500000.5 5000000 300 # m\n", {1, 2, 3})
+                  .isApprox(Eigen::Vector3d(500001.5, 5000002, 303)));
+  EXPECT_TRUE(apply("0 0 0 0 0 90\n", {1, 0, 0}).isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
+  EXPECT_TRUE(apply("0 0 0 0 90 0\n", {1, 0, 0}).isApprox(Eigen::Vector3d(0, 0, -1), 1e-12));
+  EXPECT_TRUE(apply("0 0 0 90 0 0\n", {0, 1, 0}).isApprox(Eigen::Vector3d(0, 0, 1), 1e-12));
+  // Roll first, yaw last: y -> z -> x (pitch) -> y (yaw).
+  EXPECT_TRUE(apply("1, 1, 1, 90, 90, 90", {0, 1, 0}).isApprox(Eigen::Vector3d(1, 2, 1), 1e-12));
+}
+
+TEST(OffsetFile, RefusesMalformedFilesWithTheLine) {
+  const TempDir dir;
+  const auto refused = [&](const std::string& text, std::initializer_list<const char*> parts) {
+    expectError<InputError>([&] { readOffset(dir.write("offset.xyz", text)); }, parts);
+  };
+  refused("1 2\n", {"line 1", "2 numbers"});
+  refused("# a\n1 2 3 4\n", {"line 2", "4 numbers"});
+  refused("1 2 north\n", {"line 1", "'north'"});
+  refused("1 2 nan\n", {"line 1", "not finite"});
+  refused("1 2 3\n4 5 6\n", {"line 2", "one line"});
+  refused("# only a comment\n", {"0 numbers"});
+  refused("", {"empty"});
+  refused(std::string(100000, '1'), {"too long"});
+}
+
+TEST(OffsetFile, IsFoundBesideItsCloud) {
+  const TempDir dir;
+  EXPECT_FALSE(readOffsetBeside(dir / "field.ply").has_value());
+  dir.write("offset.xyz", "1 0 0");
+  EXPECT_EQ(readOffsetBeside(dir / "field.ply")->translation().x(), 1.0);
+  dir.write("field.offset.xyz", "2 0 0");
+  EXPECT_EQ(readOffsetBeside(dir / "field.ply")->translation().x(), 2.0);
+  EXPECT_EQ(readOffsetBeside(dir / "other.ply")->translation().x(), 1.0);
+}
+
+TEST(OffsetFile, RoundTrips) {
+  const TempDir dir;
+  Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    const double pitch = i == 0 ? 90.0 : i == 1 ? -90.0 : random.uniform(-90, 90);
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    Eigen::Affine3d offset(Eigen::Translation3d(5e5 + random.uniform(), 5e6, 300.1));
+    offset.rotate(Eigen::AngleAxisd(random.uniform(-3, 3), Eigen::Vector3d::UnitZ()) *
+                  Eigen::AngleAxisd(pitch * kDegree, Eigen::Vector3d::UnitY()) *
+                  Eigen::AngleAxisd(random.uniform(-3, 3), Eigen::Vector3d::UnitX()));
+    writeOffset(dir / "offset.xyz", offset);
+    const Eigen::Affine3d back = readOffset(dir / "offset.xyz");
+    EXPECT_EQ(back.translation(), offset.translation());
+    EXPECT_LT((back.linear() - offset.linear()).cwiseAbs().maxCoeff(), 1e-9);
+  }
+  EXPECT_THROW(writeOffset(dir / "x", Eigen::Affine3d(Eigen::Scaling(1.1))), UsageError);
+  expectError<OutputError>([&] { writeOffset("/dev/full", Eigen::Affine3d::Identity()); },
+                           {"No space"});
+}
+
+TEST(MatrixFile, RoundTripsToTheBit) {
+  const TempDir dir;
+  Random random(4);
+  Eigen::Affine3d m = Eigen::Affine3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 4; ++col) m.matrix()(row, col) = random.normal() * (col == 3 ? 1e6 : 1);
+  }
+  writeMatrix(dir / "m.txt", m, "fixed_from_moving\nmetres");
+  EXPECT_EQ(readMatrix(dir / "m.txt").matrix(), m.matrix());
+  EXPECT_EQ(readTransform(dir / "m.txt").matrix(), m.matrix());
+}
+
+TEST(MatrixFile, ToleratesBracketsAndChecksTheNumbers) {
+  const TempDir dir;
+  const auto read = [&](const std::string& text) { return readMatrix(dir.write("m.txt", text)); };
+  EXPECT_EQ(read("[[1, 0, 0, 5],\r\n [0,2,0,6], # c\n [0,0,3,7], [0,0,0,1]]").translation(),
+            Eigen::Vector3d(5, 6, 7));
+  const auto refused = [&](const std::string& text, std::initializer_list<const char*> parts) {
+    expectError<InputError>([&] { read(text); }, parts);
+  };
+  refused("1 0 0 0  0 1 0 0  0 0 1 0", {"12 numbers"});
+  refused("1 0 0 0  0 1 0 0  0 0 1 0  5 6 7 1", {"last row", "5 6 7 1"});
+  refused("1 0 0 0  0 1 0 0  0 0 0 0  0 0 0 1", {"determinant"});
+  refused("1 0 0 0  0 inf 0 0  0 0 1 0  0 0 0 1", {"not finite"});
+  refused("1 0 0 0  0 1e300 0 0  0 0 1e300 0  0 0 0 1", {"determinant"});
+}
+
+TEST(MatrixFile, ReadsThePublishedTruth) {
+  const TempDir dir;
+  const auto file = dir.write("truth.txt", "1 2 3 4 0 1 0 5 0 0 1 6 0.1 -0.05\n");
+  const PublishedTruth truth = readPublishedTruth(file);
+  EXPECT_EQ(truth.affine(0, 1), 2.0);
+  EXPECT_EQ(truth.affine.translation(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(truth.relative_scale, Eigen::Vector2d(0.1, -0.05));
+  EXPECT_EQ(readTransform(file).matrix(), truth.affine.matrix());
+  expectError<InputError>([&] { readPublishedTruth(dir.write("t", "1 2 3")); }, {"3 numbers"});
+  expectError<InputError>([&] { readTransform(dir.write("t", "1 2 3")); }, {"3 numbers"});
+}
+
+}  // namespace
+}  // namespace agricolmap::io

@@ -1,0 +1,192 @@
+#include "agricolmap/locate/correlation_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "agricolmap/locate/block_search.hpp"
+#include "agricolmap/locate/hypotheses.hpp"
+#include "agricolmap/locate/polish.hpp"
+#include "agricolmap/locate/row_waves.hpp"
+#include "agricolmap/core/parallel.hpp"
+
+namespace agricolmap::locate {
+
+void describe(OptionTable& table, CorrelationOptions& options) {
+  table.number("cell", options.cell, 0.01, 10.0, "m",
+               "cell of the search, rounded to whole grid cells");
+  table.number("tolerance", options.tolerance, 0.05, 5.0, "cells",
+               "RMS displacement between neighbouring hypotheses of heading and scales");
+  table.number("block", options.block, 0.2, 100.0, "m",
+               "side of the blocks that the moving map is cut into");
+  table.integer("max_blocks", options.max_blocks, 1, 1000, "",
+                "at most this many blocks, the most textured ones, take part");
+  table.number("max_length", options.max_length, 1.0, 1000.0, "m",
+               "strips longer than this are sought by their most textured stretch of this length");
+  table.flag("rows_on_rows", options.rows_on_rows,
+             "only headings and scales that lay the rows of one map on those of the other; all, "
+             "when that finds nothing convincing");
+  table.number("max_work", options.max_work, 1.0, 1e9, "1e6 cells",
+               "limit of the fixed map's cells times correlations; beyond it the cells are made "
+               "coarser, up to 0.25 m");
+  table.integer("peaks", options.peaks, 1, 10000, "",
+                "places in the map at which the finer headings and scales around a coarse one are "
+                "looked at");
+  table.number("min_inside", options.min_inside, 0.05, 1.0, "",
+               "least share of the blocks that must lie in the fixed map");
+  table.integer("climbs", options.climbs, 1, 10000, "",
+                "placements of the lattice from which the score is climbed");
+  table.integer("candidates", options.candidates, 1, 1000, "",
+                "placements that are handed on to be refined and compared");
+  table.number("separation", options.separation, 0.0, 100.0, "m",
+               "placements whose corners differ by less are one");
+  table.group("signal", options.signal);
+  table.group("filter", options.filter);
+}
+
+namespace {
+
+/// The strongest waves of each map that are laid on one another.
+constexpr int kWaves = 2;
+/// A strip of four rows tells their distance to a tenth.
+constexpr WaveTolerance kWaveTolerance = {.along = 0.12, .across = 0.08};
+/// Power over the mean below which a peak of the spectrum may be chance: thousands of frequencies
+/// have their highest at 9 or 10.
+constexpr double kMinWave = 12.0;
+/// Cells grow by this until the work is within its limit.
+constexpr double kCoarser = 1.2;
+/// And no further than this [m]: then plants are no longer seen.
+constexpr double kCoarsestCell = 0.25;
+
+/// What is tried: coarse hypotheses, each with the finer ones that are nearest to it.
+struct Plan {
+  std::vector<Hypothesis> coarse;
+  std::vector<std::vector<Hypothesis>> members;
+  std::size_t fine = 0;
+};
+
+Plan planOver(const std::vector<Hypothesis>& coarse, const std::vector<Hypothesis>& fine,
+              const Eigen::Matrix3d& block_metric) {
+  const NearestHypothesis nearest_coarse(coarse, block_metric);
+  std::vector<std::size_t> nearest(fine.size());
+  parallelFor(
+      fine.size(), [&](std::size_t i) { nearest[i] = nearest_coarse.of(fine[i]); }, 256);
+  std::vector<std::vector<Hypothesis>> members(coarse.size());
+  for (std::size_t i = 0; i < fine.size(); ++i) members[nearest[i]].push_back(fine[i]);
+  Plan plan;
+  plan.fine = fine.size();
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    if (members[i].empty()) continue;
+    plan.coarse.push_back(coarse[i]);
+    plan.members.push_back(std::move(members[i]));
+  }
+  return plan;
+}
+
+std::vector<map::Block> texturedBlocks(std::vector<map::Block> blocks, int most) {
+  const auto count = std::min(blocks.size(), static_cast<std::size_t>(most));
+  std::stable_sort(blocks.begin(), blocks.end(),
+                   [](const map::Block& a, const map::Block& b) { return a.energy > b.energy; });
+  blocks.resize(count);
+  return blocks;
+}
+
+}  // namespace
+
+CorrelationSearch::CorrelationSearch(const CorrelationOptions& options) : options_(options) {
+  checkOptions(options);
+}
+
+/// The maps and the plan at one cell size.
+struct CorrelationSearch::Setup {
+  map::SignalMap fixed;
+  map::SignalMap moving;
+  map::StripFrame strip;
+  std::vector<map::Block> blocks;
+  Eigen::Matrix3d strip_metric;
+  Plan plan;
+  bool by_rows = false;  ///< only rows on rows
+
+  /// Cells of the fixed map times correlations.
+  double work() const {
+    return static_cast<double>(fixed.weight.size()) *
+           static_cast<double>(plan.coarse.size() * blocks.size());
+  }
+};
+
+CorrelationSearch::Setup CorrelationSearch::setUp(const map::GridMap& fixed, const map::GridMap& moving,
+                                                  const SearchSpace& space, const RowWaves& waves,
+                                                  double cell) const {
+  const int factor = std::max(1, static_cast<int>(std::lround(cell / fixed.frame.cell)));
+  Setup setup;
+  setup.fixed = map::makeSignalMap(fixed, factor, options_.signal);
+  setup.moving = map::makeSignalMap(moving, factor, options_.signal);
+  setup.strip = map::stripFrame(setup.moving);
+  const map::StripFrame& strip = setup.strip;
+  const map::Stretch stretch =
+      map::texturedStretch(map::cutBlocks(setup.moving, strip, options_.block), strip, options_.max_length);
+  setup.blocks = texturedBlocks(stretch.blocks, options_.max_blocks);
+  const map::Block& block = setup.blocks.front();
+  const Eigen::Matrix3d block_metric =
+      displacementMetric(strip.axes, 0.5 * (block.high - block.low), space.scale_axes);
+  setup.strip_metric = displacementMetric(strip.axes, strip.half_extent, space.scale_axes);
+  const double radius = options_.tolerance * setup.fixed.frame.cell;
+  const auto coarse = coverSpace(space.uncertainty, block_metric, radius);
+  const auto fine =
+      coverSpace(space.uncertainty,
+                 displacementMetric(strip.axes, stretch.half_extent, space.scale_axes), radius);
+  auto by_rows = alongWaves(fine, waves.moving, waves.fixed, space.scale_axes, kWaveTolerance);
+  setup.by_rows = !by_rows.empty();
+  setup.plan = planOver(coarse, setup.by_rows ? by_rows : fine, block_metric);
+  return setup;
+}
+
+AssociationResult CorrelationSearch::associate(const map::GridMap& fixed, const map::GridMap& moving,
+                                               const SearchSpace& space, StageTimes& times) const {
+  return times.run("search", [&] { return search(fixed, moving, space); });
+}
+
+AssociationResult CorrelationSearch::search(const map::GridMap& fixed, const map::GridMap& moving,
+                                            const SearchSpace& space) const {
+  RowWaves waves;
+  if (options_.rows_on_rows) {
+    waves.fixed = strongestWaves(fixed, options_.signal, kWaves, kMinWave);
+    waves.moving = strongestWaves(moving, options_.signal, kWaves, kMinWave);
+  }
+  double cell = options_.cell;
+  Setup setup = setUp(fixed, moving, space, waves, cell);
+  while (setup.work() > options_.max_work * 1e6 && cell * kCoarser <= kCoarsestCell) {
+    cell *= kCoarser;
+    setup = setUp(fixed, moving, space, waves, cell);
+  }
+  // A block counts as soon as its middle is within half of it from the map.
+  const int rim = static_cast<int>(std::ceil(0.5 * options_.block / setup.fixed.frame.cell));
+  const correlation::MatchedFilter filter(setup.fixed, options_.filter, rim);
+  const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, options_.peaks,
+                           options_.min_inside);
+  const Plan& plan = setup.plan;
+  std::vector<std::vector<Candidate>> found(plan.coarse.size());
+  parallelFor(plan.coarse.size(),
+              [&](std::size_t i) { found[i] = search.run(plan.coarse[i], plan.members[i]); });
+  std::vector<Candidate> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  std::vector<Candidate> kept =
+      distinctCandidates(std::move(all), options_.climbs, options_.separation, setup.strip, space);
+  const Polisher polisher(setup.moving, filter, space, setup.strip_metric, options_.min_inside);
+  parallelFor(kept.size(), [&](std::size_t i) { kept[i] = polisher.improve(kept[i]); });
+  kept = distinctCandidates(std::move(kept), options_.candidates, options_.separation, setup.strip,
+                            space);
+  AssociationResult result;
+  for (const Candidate& candidate : kept) {
+    result.placements.push_back(placementOf(candidate, setup.strip, space));
+  }
+  result.counts = {{"hypotheses", static_cast<double>(plan.fine)},
+                   {"correlations", static_cast<double>(plan.coarse.size() * setup.blocks.size())},
+                   {"rows_on_rows", setup.by_rows ? 1.0 : 0.0},
+                   {"search_cell_m", setup.fixed.frame.cell},
+                   {"blocks", static_cast<double>(setup.blocks.size())},
+                   {"placements", static_cast<double>(kept.size())}};
+  return result;
+}
+
+}  // namespace agricolmap::locate

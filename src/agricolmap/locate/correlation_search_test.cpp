@@ -1,0 +1,70 @@
+#include "agricolmap/locate/correlation_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "agricolmap/map/test_field.hpp"
+
+namespace agricolmap::locate {
+namespace {
+
+using testing::growField;
+using testing::guessError;
+using testing::TestField;
+using testing::Truth;
+using testing::viewOf;
+
+struct Sought {
+  Eigen::Vector2d shift;
+  double yaw;
+  double scale_x;
+  double scale_y;
+};
+
+/// Largest distance [m] of the best placement's matches from where they belong, for a strip of
+/// 5 × 1.6 m in a field of `field.size`, and the guess wrong by `error`.
+double worstMatch(const TestField& field, const Sought& error) {
+  const evaluate::Truth truth = growField(field);
+  const Eigen::Vector2d middle = Eigen::Vector2d::Constant(0.5 * field.size);
+  const Eigen::Affine2d fixed_from_moving =
+      guessError(middle, error.shift, error.yaw, error.scale_x, error.scale_y);
+  const map::GridMap fixed =
+      viewOf(truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(field.size)),
+             Eigen::Affine2d::Identity(), 0.02, 11);
+  const map::GridMap moving = viewOf(
+      truth, field, map::Box2(middle - Eigen::Vector2d(2.5, 0.8), middle + Eigen::Vector2d(2.5, 0.8)),
+      fixed_from_moving, 0.05, 12);
+  SearchSpace space;
+  space.centre = middle;
+  StageTimes times;
+  const AssociationResult result =
+      CorrelationSearch(CorrelationOptions{}).associate(fixed, moving, space, times);
+  if (result.placements.empty()) return 1e9;
+  double worst = 0.0;
+  for (const Match& match : result.placements.front().matches) {
+    worst = std::max(worst, (fixed_from_moving * match.moving - match.fixed).norm());
+  }
+  return worst;
+}
+
+TEST(CorrelationSearch, FindsAStripWhoseGuessIsAsWrongAsThePaperAllows) {
+  TestField field;
+  field.seed = 21;
+  EXPECT_LT(worstMatch(field, {{4.0, -3.0}, 0.2, 1.3, 0.75}), 0.15);
+  EXPECT_LT(worstMatch(field, {{-3.0, 4.0}, -0.2, 0.75, 1.3}), 0.15);
+}
+
+// A map smaller than what the guess allows: circular correlation repeats every place one period
+// away, and the search must know which of the two lies in the map.
+TEST(CorrelationSearch, AMapSmallerThanTheSearchHasNoSecondPlace) {
+  TestField field;
+  field.size = 6.0;
+  field.seed = 22;
+  for (const Eigen::Vector2d& shift : {Eigen::Vector2d(0.0, 1.2), {0.0, -1.2}, {0.3, 0.8}}) {
+    EXPECT_LT(worstMatch(field, {shift, 0.03, 0.95, 1.05}), 0.15) << shift.transpose();
+  }
+}
+
+}  // namespace
+}  // namespace agricolmap::locate

@@ -1,0 +1,104 @@
+#include "agricolmap/locate/polish.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+namespace agricolmap::locate {
+namespace {
+
+constexpr double kFirstStep = 1.4;  // cells
+constexpr double kLastStep = 0.15;  // cells
+constexpr int kSweeps = 6;          // per step length, at most
+
+}  // namespace
+
+Polisher::Polisher(const map::SignalMap& moving, const correlation::MatchedFilter& filter, const SearchSpace& space,
+                   const Eigen::Matrix3d& strip_metric, double min_inside)
+    : filter_(filter), space_(space), min_inside_(min_inside) {
+  const auto height_weight = static_cast<float>(filter.options().height_weight);
+  for (int r = 0; r < moving.frame.rows; ++r) {
+    for (int c = 0; c < moving.frame.cols; ++c) {
+      const std::size_t i = moving.weight.index(r, c);
+      if (moving.weight[i] <= 0.0F) continue;
+      const float w = moving.weight[i];
+      simulate::Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(), w * moving.channel[0][i],
+                w * height_weight * moving.channel[1][i], 0.0F};
+      cell.energy = cell.greenness * cell.greenness + cell.height * cell.height;
+      energy_ += static_cast<double>(cell.energy);
+      cells_.push_back(cell);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(strip_metric);
+  directions_ = eigen.eigenvectors() *
+                eigen.eigenvalues().cwiseMax(1e-9).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
+double Polisher::score(const Candidate& candidate) const {
+  const Raster<float>& green = filter_.whitenedGreenness();
+  const Raster<float>& high = filter_.whitenedHeight();
+  const double cell = filter_.frame().cell;
+  const Eigen::Matrix2f linear =
+      (linearOf(candidate.hypothesis, space_.scale_axes) / cell).cast<float>();
+  const Eigen::Vector2f origin =
+      filter_.frame().cellOf(space_.centre + candidate.shift).cast<float>();
+  const auto last_col = static_cast<float>(green.cols() - 1);
+  const auto last_row = static_cast<float>(green.rows() - 1);
+  const auto stride = static_cast<std::size_t>(green.cols());
+  double sum = 0.0;
+  double inside = 0.0;
+  for (const simulate::Cell& c : cells_) {
+    const float x = origin.x() + linear(0, 0) * c.offset.x() + linear(0, 1) * c.offset.y();
+    const float y = origin.y() + linear(1, 0) * c.offset.x() + linear(1, 1) * c.offset.y();
+    if (!(x >= 0.0F && y >= 0.0F && x < last_col && y < last_row)) continue;
+    const auto col = static_cast<std::size_t>(x);
+    const auto row = static_cast<std::size_t>(y);
+    const float u = x - static_cast<float>(col), v = y - static_cast<float>(row);
+    const std::size_t i = row * stride + col;
+    const float a = (1 - u) * (1 - v), b = u * (1 - v), d = (1 - u) * v, e = u * v;
+    const float g =
+        a * green[i] + b * green[i + 1] + d * green[i + stride] + e * green[i + stride + 1];
+    const float h = a * high[i] + b * high[i + 1] + d * high[i + stride] + e * high[i + stride + 1];
+    sum += static_cast<double>(c.greenness * g + c.height * h);
+    inside += static_cast<double>(c.energy);
+  }
+  const double share = energy_ > 0.0 ? inside / energy_ : 0.0;
+  if (share < min_inside_) return -std::numeric_limits<double>::infinity();
+  return sum / (candidate.deviation * std::sqrt(share));
+}
+
+Candidate Polisher::improve(Candidate best) const {
+  const double cell = filter_.frame().cell;
+  best.score = score(best);
+  const auto moved = [&](int direction, double length) {
+    Candidate next = best;
+    if (direction < 3) {
+      const Eigen::Vector3d p =
+          best.hypothesis.vector() + length * cell * directions_.col(direction);
+      next.hypothesis = {p[0], std::exp(p[1]), std::exp(p[2])};
+    } else {
+      next.shift[direction - 3] += length * cell;
+    }
+    next.score = score(next);
+    return next;
+  };
+  for (double step = kFirstStep; step >= kLastStep; step *= 0.5) {
+    bool improved = true;
+    for (int sweep = 0; sweep < kSweeps && improved; ++sweep) {
+      improved = false;
+      for (int direction = 0; direction < 5; ++direction) {
+        for (const double sign : {1.0, -1.0}) {
+          const Candidate next = moved(direction, sign * step);
+          if (next.score > best.score) {
+            best = next;
+            improved = true;
+            break;
+          }
+        }
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace agricolmap::locate

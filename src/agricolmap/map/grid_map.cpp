@@ -1,0 +1,297 @@
+#include "agricolmap/map/grid_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
+
+namespace agricolmap::map {
+
+void describe(OptionTable& table, GridOptions& options) {
+  table.number("cell", options.cell, 0.005, 1.0, "m", "side of a grid cell, s in the paper");
+  table.number("sigma", options.sigma, 0.001, 10.0, "m",
+               "deviation of the Gaussian weight around a cell's centre, sigma_avg in the paper");
+  table.choice("exg", options.exg, {"plain", "chromatic"},
+               "Excess Green on raw colours (the paper's) or on chromatic coordinates");
+  table.flag("coarsen", options.coarsen,
+             "larger cells, and sigma with them, where a cloud has fewer points than cells");
+}
+
+float excessGreen(Rgb colour, ExgKind kind) {
+  const int sum = colour.r + colour.g + colour.b;
+  const int excess = 3 * colour.g - sum;
+  if (kind == ExgKind::kPlain) return static_cast<float>(excess) / 255.0F;
+  return sum == 0 ? 0.0F : static_cast<float>(excess) / static_cast<float>(sum);
+}
+
+namespace {
+
+constexpr int kBandRows = 16;
+constexpr std::size_t kChunk = 1U << 16;
+constexpr double kMaxCells = 4e8;
+
+GridFrame frameFor(const Box2& window, double cell) {
+  GridFrame frame;
+  frame.cell = cell;
+  const Eigen::Array2d low = (window.min().array() / cell).floor();
+  const Eigen::Array2d high = (window.max().array() / cell).ceil().max(low + 1.0);
+  const Eigen::Array2d count = high - low;
+  if (!(count.prod() <= kMaxCells)) {
+    throw InputError(fmt::format(
+        "a map of {:.0f} x {:.0f} m has too many cells of {} m (limit {:.0e}); crop the clouds, "
+        "tighten the prior or enlarge grid.cell",
+        window.sizes().x(), window.sizes().y(), cell, kMaxCells));
+  }
+  frame.corner = (low * cell).matrix();
+  frame.cols = static_cast<int>(count.x());
+  frame.rows = static_cast<int>(count.y());
+  return frame;
+}
+
+/// A point inside the map, levelled: what the accumulation needs, small enough to sort.
+struct Located {
+  float u;  ///< continuous column, cell 0 spans [0, 1)
+  float v;  ///< continuous row
+  float z;
+  std::uint32_t index;
+};
+
+/// The points of the window, grouped by bands of rows and in file order inside a band, so that
+/// bands can be summed in parallel with the same result on any number of threads.
+struct Bands {
+  std::vector<Located> points;
+  std::vector<std::size_t> begin;  ///< per band, plus the end
+};
+
+/// Continuous cell of a levelled point; false outside the map.
+class Locator {
+ public:
+  Locator(const GridFrame& frame, const Eigen::Affine3d& levelled_from_local)
+      : rows_(static_cast<float>(frame.rows)), cols_(static_cast<float>(frame.cols)) {
+    Eigen::Matrix<double, 3, 4> m = levelled_from_local.matrix().topRows<3>();
+    m.topRows<2>() /= frame.cell;
+    m.col(3).head<2>() -= frame.corner / frame.cell;
+    linear_ = m.leftCols<3>().cast<float>();
+    shift_ = m.col(3).cast<float>();
+  }
+  bool locate(const Eigen::Vector3f& p, Located& out) const {
+    const Eigen::Vector3f q = linear_ * p + shift_;
+    if (!(q.x() >= 0.0F && q.y() >= 0.0F && q.x() < cols_ && q.y() < rows_)) return false;
+    out.u = q.x();
+    out.v = q.y();
+    out.z = q.z();
+    return true;
+  }
+
+ private:
+  float rows_;
+  float cols_;
+  Eigen::Matrix3f linear_;
+  Eigen::Vector3f shift_;
+};
+
+Bands sortIntoBands(const Cloud& cloud, const GridFrame& frame, const Locator& locator) {
+  const std::size_t bands = static_cast<std::size_t>((frame.rows + kBandRows - 1) / kBandRows);
+  const std::size_t chunks = (cloud.size() + kChunk - 1) / kChunk;
+  // Every point is located once: two computations of the same cell need not round alike.
+  std::vector<std::vector<Located>> inside(chunks);
+  std::vector<std::size_t> places(chunks * bands, 0);
+  const auto bandOf = [](const Located& p) { return static_cast<std::size_t>(p.v) / kBandRows; };
+  parallelFor(chunks, [&](std::size_t chunk) {
+    Located located{};
+    const std::size_t end = std::min(cloud.size(), (chunk + 1) * kChunk);
+    inside[chunk].reserve(end - chunk * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      if (!locator.locate(cloud.xyz[i], located)) continue;
+      located.index = static_cast<std::uint32_t>(i);
+      inside[chunk].push_back(located);
+      ++places[chunk * bands + bandOf(located)];
+    }
+  });
+  // Prefix sums give every chunk its own places in every band.
+  Bands result;
+  result.begin.resize(bands + 1);
+  std::size_t next = 0;
+  for (std::size_t band = 0; band < bands; ++band) {
+    result.begin[band] = next;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+      next += std::exchange(places[chunk * bands + band], next);
+    }
+  }
+  result.begin[bands] = next;
+  result.points.resize(next);
+  parallelFor(chunks, [&](std::size_t chunk) {
+    for (const Located& p : inside[chunk]) {
+      result.points[places[chunk * bands + bandOf(p)]++] = p;
+    }
+    inside[chunk] = {};
+  });
+  return result;
+}
+
+/// Weighted sums of one cell.
+struct CellSum {
+  float weight = 0.0F;
+  float height = 0.0F;
+  float exg = 0.0F;
+  std::array<float, 3> colour{};
+  float nearest_distance = std::numeric_limits<float>::max();
+  std::uint32_t nearest = 0;
+};
+
+void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_row, int cols,
+                    const Located* begin, const Located* end, std::vector<CellSum>& sums) {
+  const float cells2_to_exponent =
+      static_cast<float>(-0.5 * options.cell * options.cell / (options.sigma * options.sigma));
+  for (const Located* p = begin; p != end; ++p) {
+    const int col = static_cast<int>(p->u);
+    const int row = static_cast<int>(p->v);
+    const float du = p->u - static_cast<float>(col) - 0.5F;
+    const float dv = p->v - static_cast<float>(row) - 0.5F;
+    const float distance2 = du * du + dv * dv;
+    const float weight = std::exp(cells2_to_exponent * distance2);
+    CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * cols + col];
+    sum.weight += weight;
+    sum.height += weight * p->z;
+    if (cloud.hasColour()) {
+      const Rgb colour = cloud.rgb[p->index];
+      sum.exg += weight * excessGreen(colour, options.exg);
+      sum.colour[0] += weight * colour.r;
+      sum.colour[1] += weight * colour.g;
+      sum.colour[2] += weight * colour.b;
+    }
+    if (distance2 < sum.nearest_distance) {
+      sum.nearest_distance = distance2;
+      sum.nearest = p->index;
+    }
+  }
+}
+
+void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMap& map) {
+  for (int row = first_row; row < first_row + rows; ++row) {
+    for (int col = 0; col < map.frame.cols; ++col) {
+      const CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * map.frame.cols + col];
+      if (sum.weight <= 0.0F) continue;
+      const std::size_t i = map.weight.index(row, col);
+      const float scale = 1.0F / sum.weight;
+      map.weight[i] = sum.weight;
+      map.height[i] = scale * sum.height;
+      map.exg[i] = scale * sum.exg;
+      map.colour[i] = {static_cast<std::uint8_t>(scale * sum.colour[0] + 0.5F),
+                       static_cast<std::uint8_t>(scale * sum.colour[1] + 0.5F),
+                       static_cast<std::uint8_t>(scale * sum.colour[2] + 0.5F)};
+      map.nearest[i] = sum.nearest;
+    }
+  }
+}
+
+}  // namespace
+
+GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
+                    const Box2& window, const GridOptions& options) {
+  checkOptions(options);
+  if (cloud.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(fmt::format("{}: more than 2^32 points; split the cloud", cloud.name));
+  }
+  GridMap map;
+  map.frame = frameFor(window, options.cell);
+  const int rows = map.frame.rows;
+  const int cols = map.frame.cols;
+  const Bands bands = sortIntoBands(cloud, map.frame, Locator(map.frame, levelled_from_local));
+  map.points = bands.points.size();
+  if (map.points == 0) {
+    throw InputError(fmt::format(
+        "{}: no point lies in the window that the initial guess gives; check --prior and the "
+        "offset.xyz files (do both clouds use the same coordinate system?)",
+        cloud.name));
+  }
+  map.weight = Raster<float>(rows, cols);
+  map.height = Raster<float>(rows, cols);
+  map.exg = Raster<float>(rows, cols);
+  map.colour = Raster<Rgb>(rows, cols);
+  map.nearest = Raster<std::uint32_t>(rows, cols);
+  parallelFor(bands.begin.size() - 1, [&](std::size_t band) {
+    const int first_row = static_cast<int>(band) * kBandRows;
+    const int band_rows = std::min(kBandRows, rows - first_row);
+    std::vector<CellSum> sums(static_cast<std::size_t>(band_rows) * cols);
+    accumulateBand(cloud, options, first_row, cols, bands.points.data() + bands.begin[band],
+                   bands.points.data() + bands.begin[band + 1], sums);
+    writeBand(sums, first_row, band_rows, map);
+  });
+  map.filled = static_cast<std::size_t>(
+      std::count_if(map.weight.begin(), map.weight.end(), [](float w) { return w > 0.0F; }));
+  return map;
+}
+
+double pointSpacing(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
+  constexpr double kBin = 0.5;  // [m]; coarse enough to hold some points of any map worth the name
+  constexpr std::size_t kMostSamples = 200'000;
+  constexpr double kMostBins = 1e8;
+  if (cloud.empty()) return 0.0;
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kMostSamples);
+  std::vector<Eigen::Vector2d> places;
+  places.reserve(cloud.size() / step + 1);
+  Box2 box;
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    places.push_back((levelled_from_local * cloud.xyz[i].cast<double>()).head<2>() / kBin);
+    box.extend(places.back());
+  }
+  const double cols = std::floor(box.sizes().x()) + 1.0;
+  const double rows = std::floor(box.sizes().y()) + 1.0;
+  if (cols * rows > kMostBins) return 0.0;
+  std::vector<char> seen(static_cast<std::size_t>(cols * rows), 0);
+  for (const Eigen::Vector2d& place : places) {
+    const Eigen::Vector2d at = (place - box.min()).array().floor().matrix();
+    seen[static_cast<std::size_t>(at.y() * cols + at.x())] = 1;
+  }
+  const auto count = static_cast<double>(std::count(seen.begin(), seen.end(), 1));
+  return kBin * std::sqrt(count / static_cast<double>(cloud.size()));
+}
+
+GridOptions coarsened(const GridOptions& options, double spacing) {
+  // 0.7: half of the cells filled, so that neighbours can be compared.
+  const double factor = std::max(1.0, 0.7 * spacing / options.cell);
+  GridOptions coarser = options;
+  if (!options.coarsen) return coarser;
+  coarser.cell *= factor;
+  coarser.sigma *= factor;
+  return coarser;
+}
+
+GridMap croppedMap(const GridMap& map, const Box2& window) {
+  const Eigen::Vector2d low = map.frame.cellOf(window.min());
+  const Eigen::Vector2d high = map.frame.cellOf(window.max());
+  const auto within = [](double at, int count) {
+    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count)));
+  };
+  const int row0 = within(std::floor(low.y()), map.frame.rows);
+  const int col0 = within(std::floor(low.x()), map.frame.cols);
+  GridMap part;
+  part.frame = map.frame;
+  part.frame.corner += map.frame.cell * Eigen::Vector2d(col0, row0);
+  part.frame.rows = std::max(0, within(std::ceil(high.y()) + 1.0, map.frame.rows) - row0);
+  part.frame.cols = std::max(0, within(std::ceil(high.x()) + 1.0, map.frame.cols) - col0);
+  const auto cut = [&]<typename T>(const Raster<T>& from, Raster<T>& to) {
+    if (from.empty()) return;
+    to = Raster<T>(part.frame.rows, part.frame.cols);
+    for (int r = 0; r < part.frame.rows; ++r) {
+      std::copy_n(from.row(row0 + r) + col0, part.frame.cols, to.row(r));
+    }
+  };
+  cut(map.weight, part.weight);
+  cut(map.height, part.height);
+  cut(map.exg, part.exg);
+  cut(map.colour, part.colour);
+  cut(map.nearest, part.nearest);
+  part.points = map.points;
+  part.filled = static_cast<std::size_t>(
+      std::count_if(part.weight.begin(), part.weight.end(), [](float w) { return w > 0.0F; }));
+  return part;
+}
+
+}  // namespace agricolmap::map

@@ -1,0 +1,70 @@
+// Stage 2: the multimodal grid map (paper Sec. III-A): per cell a surface height and an Excess
+// Green index, both Gaussian-weighted means of the cell's points.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <limits>
+
+#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/options.hpp"
+#include "agricolmap/core/raster.hpp"
+
+namespace agricolmap::map {
+
+/// How greenness is computed from sensor colours r, g, b.
+enum class ExgKind {
+  kPlain,      ///< (2g − r − b)/255, the paper's: −2…2, follows brightness
+  kChromatic,  ///< (2g − r − b)/(r + g + b): −1…2, the same in sun and shade
+};
+
+struct GridOptions {
+  double cell = 0.02;   ///< s (Tab. III) [m]
+  double sigma = 0.04;  ///< σ_avg (Tab. III) [m]
+  ExgKind exg = ExgKind::kChromatic;
+  /// Larger cells, and σ with them, where a cloud has fewer points than cells.
+  bool coarsen = true;
+};
+void describe(OptionTable& table, GridOptions& options);
+
+/// Excess Green of one colour.
+float excessGreen(Rgb colour, ExgKind kind);
+
+/// All rasters have the frame's size; where `weight` is 0 the cell is empty and the other values
+/// mean nothing. Coordinates are those of the levelled frame.
+struct GridMap {
+  GridFrame frame;
+  Raster<float> weight;           ///< sum of the points' Gaussian weights, 0 = empty
+  Raster<float> height;           ///< mean height above the levelled ground plane [m]
+  Raster<float> exg;              ///< mean Excess Green
+  Raster<Rgb> colour;             ///< mean colour
+  Raster<std::uint32_t> nearest;  ///< index in the cloud of the point nearest to the cell's centre
+  std::size_t points = 0;         ///< points that fell into the map
+  std::size_t filled = 0;         ///< cells that are not empty
+  /// Robust deviation of the ground from height 0 where the cloud shows it [m]; infinite: unknown.
+  double ground_deviation = std::numeric_limits<double>::infinity();
+
+  bool valid(int row, int col) const { return weight(row, col) > 0.0F; }
+  bool valid(std::size_t i) const { return weight[i] > 0.0F; }
+};
+
+/// Horizontal window of the levelled frame [m].
+using Box2 = Eigen::AlignedBox2d;
+
+/// Mean distance between neighbouring points, seen from above [m]: the root of the area that holds
+/// points over their number.
+double pointSpacing(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
+
+/// The options for clouds with points this far apart [m]: as they are, or, if they may be, coarser.
+GridOptions coarsened(const GridOptions& options, double spacing);
+
+/// Grids the points of `cloud` that lie in `window` after `levelled_from_local`. Cell borders lie
+/// on multiples of the cell size, so maps of one frame share their lattice. Throws InputError when
+/// no point lies in the window.
+GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
+                    const Box2& window, const GridOptions& options);
+
+/// The part of a map whose cells touch `window`; `points` stays the whole map's.
+GridMap croppedMap(const GridMap& map, const Box2& window);
+
+}  // namespace agricolmap::map

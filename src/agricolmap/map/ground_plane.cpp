@@ -1,0 +1,142 @@
+#include "agricolmap/map/ground_plane.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+namespace agricolmap::map {
+namespace {
+
+constexpr std::size_t kMinPointsPerCell = 3;
+constexpr int kIterations = 15;
+/// Points so close to a plane may be of it: a field's clods and tracks [m].
+constexpr double kRelief = 0.06;
+/// A sought plane begins with points so far from it and closes in [m].
+constexpr double kFirstRelief = 0.2;
+/// Points so far below a plane speak against its being the ground [m].
+constexpr double kBelow = 0.1;
+/// Heights among the low points at which a plane under the canopy is sought.
+constexpr double kStarts[] = {0.02, 0.1, 0.25, 0.5};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double tukeyWeight(double residual, double limit) {
+  const double u = residual / limit;
+  return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
+}
+
+/// One step of weighted least squares.
+Eigen::Vector3d solvePlane(const LevelPoints& points, const std::vector<double>& weights,
+                           const Eigen::Vector3d& centre, double cell) {
+  Eigen::Matrix3d normal = Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal();
+  normal *= 1e-3 * cell * cell;
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d d = points[i] - centre;
+    const Eigen::Vector3d row(d.x(), d.y(), 1.0);
+    normal += weights[i] * row * row.transpose();
+    right += weights[i] * d.z() * row;
+  }
+  return normal.ldlt().solve(right);
+}
+
+double supportOf(const GroundPlane& plane, const LevelPoints& points,
+                 const Eigen::Vector3d& centre) {
+  double support = 0.0;
+  for (const Eigen::Vector3d& point : points) {
+    const double over = plane.over(point, centre);
+    support += tukeyWeight(over, kRelief) - (over < -kBelow ? 1.0 : 0.0);
+  }
+  return support;
+}
+
+}  // namespace
+
+Eigen::Vector3d GroundPlane::normal() const {
+  return Eigen::Vector3d(-slope_and_height.x(), -slope_and_height.y(), 1.0).normalized();
+}
+
+LevelPoints lowPoints(const LevelPoints& points, double cell, double percentile) {
+  std::vector<std::pair<std::int64_t, std::size_t>> keyed(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto col = static_cast<std::int64_t>(std::floor(points[i].x() / cell));
+    const auto row = static_cast<std::int64_t>(std::floor(points[i].y() / cell));
+    keyed[i] = {(row << 32) + col, i};
+  }
+  std::sort(keyed.begin(), keyed.end());
+  LevelPoints low;
+  for (std::size_t begin = 0; begin < keyed.size();) {
+    std::size_t end = begin;
+    while (end < keyed.size() && keyed[end].first == keyed[begin].first) ++end;
+    if (end - begin >= kMinPointsPerCell) {
+      const auto nth = keyed.begin() +
+                       static_cast<std::ptrdiff_t>(static_cast<double>(begin) +
+                                                   percentile * static_cast<double>(end - begin));
+      std::nth_element(keyed.begin() + static_cast<std::ptrdiff_t>(begin), nth,
+                       keyed.begin() + static_cast<std::ptrdiff_t>(end),
+                       [&](const auto& a, const auto& b) {
+                         return points[a.second].z() < points[b.second].z();
+                       });
+      low.push_back(points[nth->second]);
+    }
+    begin = end;
+  }
+  return low;
+}
+
+GroundPlane fitPlane(const LevelPoints& points, const Eigen::Vector3d& centre, double cell) {
+  GroundPlane plane;
+  std::vector<double> weights(points.size(), 1.0);
+  std::vector<double> absolute(points.size());
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    plane.slope_and_height = solvePlane(points, weights, centre, cell);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      absolute[i] = std::abs(plane.over(points[i], centre));
+    }
+    plane.deviation = 1.4826 * median(absolute);
+    const double limit = 4.685 * std::max(plane.deviation, 1e-4);
+    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = tukeyWeight(absolute[i], limit);
+  }
+  return plane;
+}
+
+SupportedPlane findPlaneUnder(const LevelPoints& points, const Eigen::Vector3d& centre,
+                              double cell) {
+  std::vector<double> heights(points.size());
+  std::transform(points.begin(), points.end(), heights.begin(),
+                 [&](const Eigen::Vector3d& point) { return point.z() - centre.z(); });
+  std::sort(heights.begin(), heights.end());
+  SupportedPlane best;
+  best.support = -1e300;
+  std::vector<double> weights(points.size());
+  for (const double start : kStarts) {
+    const auto place = static_cast<std::size_t>(start * static_cast<double>(heights.size()));
+    SupportedPlane found;
+    found.plane.slope_and_height.z() = heights[std::min(place, heights.size() - 1)];
+    double limit = kFirstRelief;
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        weights[i] = tukeyWeight(found.plane.over(points[i], centre), limit);
+      }
+      found.plane.slope_and_height = solvePlane(points, weights, centre, cell);
+      limit = std::max(kRelief, 0.8 * limit);
+    }
+    found.support = supportOf(found.plane, points, centre);
+    if (found.support > best.support) best = found;
+  }
+  std::vector<double> near;
+  for (const Eigen::Vector3d& point : points) {
+    const double over = std::abs(best.plane.over(point, centre));
+    if (over < kRelief) near.push_back(over);
+  }
+  best.plane.deviation = near.empty() ? kRelief : 1.4826 * median(std::move(near));
+  return best;
+}
+
+}  // namespace agricolmap::map

@@ -1,0 +1,91 @@
+#include "agricolmap/map/hidden_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "agricolmap/map/signal_map.hpp"
+
+namespace agricolmap::map {
+
+void describe(OptionTable& table, HiddenGroundOptions& options) {
+  table.flag("fill", options.fill,
+             "take what a plant hides from the moving map's camera for bare ground when refining");
+  table.number("radius", options.radius, 0.02, 10.0, "m",
+               "half side of the square that says how many points a cell usually has");
+  table.number("whole", options.whole, 0.05, 2.0, "",
+               "a cell with this share of the usual number of points was seen whole");
+  table.number("bare", options.bare, 0.0, 1.0, "",
+               "bare ground lies below this share of the way from soil to plant");
+}
+
+namespace {
+
+constexpr float kLeastPoints = 4.0F;  // a cell, on average
+constexpr float kLeastBare = 0.05F;   // share of the cells around
+// Cells farther from points than these are not behind a plant but beyond the strip.
+constexpr int kReach = 2;              // cells
+constexpr float kLeastFilled = 0.25F;  // of the cells within reach
+
+/// 1 where the map shows bare ground: not green, or, without colours, not high.
+Raster<float> bareGround(const GridMap& map, double share) {
+  std::vector<float> exg, height;
+  for (std::size_t i = 0; i < map.weight.size(); ++i) {
+    if (!map.valid(i)) continue;
+    exg.push_back(map.exg[i]);
+    height.push_back(map.height[i]);
+  }
+  const auto limit = [&](std::vector<float>& values) {
+    const auto at = [&](double part) {
+      const auto place =
+          values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size()));
+      std::nth_element(values.begin(), place, values.end());
+      return *place;
+    };
+    const float low = at(0.1), high = at(0.9);
+    return std::pair{low + static_cast<float>(share) * (high - low), high > low};
+  };
+  Raster<float> bare(map.frame.rows, map.frame.cols);
+  if (exg.empty()) return bare;
+  const auto [greenest, coloured] = limit(exg);
+  const auto [highest, relief] = limit(height);
+  for (std::size_t i = 0; i < bare.size(); ++i) {
+    if (!map.valid(i)) continue;
+    const bool is_bare = coloured ? map.exg[i] < greenest : relief && map.height[i] < highest;
+    bare[i] = is_bare ? 1.0F : 0.0F;
+  }
+  return bare;
+}
+
+}  // namespace
+
+GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options) {
+  checkOptions(options);
+  GridMap filled = map;
+  if (!options.fill) return filled;
+  const int radius = std::max(1, static_cast<int>(std::lround(options.radius / map.frame.cell)));
+  Raster<float> seen(map.frame.rows, map.frame.cols);
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = map.valid(i) ? 1.0F : 0.0F;
+  const Raster<float> all(map.frame.rows, map.frame.cols, 1.0F);
+  const Raster<float> bare = bareGround(map, options.bare);
+  const Raster<float> bare_share = weightedBoxMean(bare, all, radius);
+  const Raster<float> soil = weightedBoxMean(map.exg, bare, radius);
+  const Raster<float> ground = weightedBoxMean(map.height, bare, radius);
+  const Raster<float> usual = weightedBoxMean(map.weight, seen, radius);
+  const Raster<float> around = weightedBoxMean(seen, all, kReach);
+  const auto whole = static_cast<float>(options.whole);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (usual[i] < kLeastPoints || bare_share[i] < kLeastBare || around[i] < kLeastFilled) continue;
+    const float share = map.weight[i] / (whole * usual[i]);
+    if (share >= 1.0F) continue;
+    filled.exg[i] = share * map.exg[i] + (1.0F - share) * soil[i];
+    filled.height[i] = share * map.height[i] + (1.0F - share) * ground[i];
+    if (!map.valid(i)) {
+      filled.weight[i] = 1.0F;
+      ++filled.filled;
+    }
+  }
+  return filled;
+}
+
+}  // namespace agricolmap::map

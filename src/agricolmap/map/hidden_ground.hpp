@@ -1,0 +1,26 @@
+// Ground that a robot's camera does not see because a plant stands before it, filled in. Of cells
+// behind a plant only what rises above the line of sight has points, so the map shows them greener
+// and higher than they are, always on the far side of the rows: on strips of simulated crops that
+// made the refinement's scale across the strip up to 2 % too small.
+#pragma once
+
+#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap::map {
+
+struct HiddenGroundOptions {
+  bool fill = true;
+  double radius = 0.25;  ///< half side of the square whose cells say what is usual around [m]
+  double whole = 0.5;    ///< a cell with this share of the usual number of points was seen whole
+  double bare = 0.3;     ///< bare ground: below this share of the way from soil to plant
+};
+void describe(OptionTable& table, HiddenGroundOptions& options);
+
+/// A copy of `map` in which the part of each cell that has no points, for its share of the usual
+/// number of points around, has Excess Green and height of the bare ground around. Cells far from
+/// all points stay empty, as do those with no bare ground around; a map with fewer than 4 points
+/// a cell stays as it is, as their number says nothing then. Colours stay, too.
+GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options);
+
+}  // namespace agricolmap::map

@@ -1,0 +1,113 @@
+#include "agricolmap/map/level.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/random.hpp"
+
+namespace agricolmap::map {
+namespace {
+
+/// A 10 × 2.2 m strip with plants on 30 % of it and flying points.
+Cloud makeStrip(double roll_deg, double pitch_deg, double height) {
+  Random random(7);
+  const Eigen::Affine3d tilt(
+      Eigen::Translation3d(0, 0, height) *
+      Eigen::AngleAxisd(roll_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitX()) *
+      Eigen::AngleAxisd(pitch_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitY()));
+  Cloud cloud;
+  cloud.name = "strip";
+  for (int i = 0; i < 50000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    if (random.chance(0.3)) p.z() += random.uniform(0.0, 0.2);
+    if (random.chance(0.01)) p.z() += random.normal(2.0);
+    cloud.xyz.push_back((tilt * p).cast<float>());
+  }
+  return cloud;
+}
+
+TEST(Level, FindsTheGroundUnderPlantsAndFlyingPoints) {
+  for (const double roll : {0.0, 3.0, -10.0, 30.0}) {
+    const Cloud cloud = makeStrip(roll, 2.0, 5.0);
+    const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+    double worst = 0.0;
+    const Cloud flat = makeStrip(0, 0, 0);
+    for (std::size_t i = 0; i < cloud.size(); i += 97) {
+      const Eigen::Vector3d p = level.levelled_from_guess * cloud.xyz[i].cast<double>();
+      if (std::abs(flat.xyz[i].z()) < 0.2F) {
+        worst = std::max(worst, std::abs(p.z() - static_cast<double>(flat.xyz[i].z())));
+      }
+    }
+    EXPECT_LT(worst, 0.03) << "roll " << roll;
+  }
+}
+
+// As thick as it is wide: the plane through all its points stands on edge.
+TEST(Level, ANarrowStripOfATallCropStandsUpright) {
+  Random random(8);
+  Cloud cloud;
+  cloud.name = "maize";
+  for (int i = 0; i < 50000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    if (random.chance(0.7)) p.z() += random.chance(0.5) ? 0.2 : 2.2;
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_LT(level.tilt, 0.02);
+}
+
+// Under a canopy that nearly closes one point in twenty is of the ground, and the lower leaves of a
+// crop that grows better on one side make a plane of their own.
+TEST(Level, FindsTheGroundUnderATallCropThatNearlyCloses) {
+  Random random(9);
+  Cloud cloud;
+  cloud.name = "maize";
+  for (int i = 0; i < 100000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    if (random.chance(0.95)) p.z() += (0.4 + 0.3 * p.y()) * random.uniform(0.5, 2.0);
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_LT(level.tilt, 0.02);
+  EXPECT_LT(level.roughness, 0.03);
+}
+
+// Four cells of five show canopy only, which is higher on one side; a few points lie below ground.
+TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
+  Random random(10);
+  Cloud cloud;
+  cloud.name = "soybean";
+  for (int i = 0; i < 100000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    const bool hole =
+        std::fmod(p.x(), 0.5) < 0.1 && std::fmod(0.37 * std::floor(p.x() / 0.5), 1) < 0.4;
+    if (!hole) p.z() += 0.3 + 0.1 * p.y() + random.uniform(0.0, 0.2);
+    if (random.chance(1e-4)) p.z() -= 0.3;
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_TRUE(level.under_canopy);
+  EXPECT_LT(level.tilt, 0.01);
+  EXPECT_LT(level.roughness, 0.03);
+  EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(5.0, 1.1, 0.0)).z(), 0.0, 0.03);
+}
+
+TEST(Level, RefusesCloudsThatAreNoMap) {
+  Cloud cloud;
+  cloud.name = "bad";
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  cloud.xyz.assign(1, Eigen::Vector3f(1, 2, 3));
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  cloud.xyz.assign(1000, Eigen::Vector3f(1, 2, 3));
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  cloud.xyz.clear();
+  for (int i = 0; i < 1000; ++i) cloud.xyz.emplace_back(0.01F * static_cast<float>(i), 0, 0);
+  EXPECT_THROW(levelCloud(cloud, Eigen::Affine3d::Identity(), {}), InputError);
+  EXPECT_THROW(levelCloud(makeStrip(70, 0, 0), Eigen::Affine3d::Identity(), {}), InputError);
+}
+
+}  // namespace
+}  // namespace agricolmap::map

@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "agricolmap/core/scaled_rotation.hpp"
+#include "agricolmap/paper/estimate_affine.hpp"
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/core/transform.hpp"
+
+namespace agricolmap::paper {
+namespace {
+
+/// R(yaw)·A·diag(scale)·Aᵀ with a shift.
+Eigen::Affine2d poseOf(double yaw, double sx, double sy, const Eigen::Matrix2d& axes) {
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();
+  pose.linear() = rotation2(yaw) * axes * Eigen::Vector2d(sx, sy).asDiagonal() * axes.transpose();
+  pose.translation() = Eigen::Vector2d(3.0, -7.0);
+  return pose;
+}
+
+/// Points of a 10 × 2 m strip, moved, with normal noise and a share of points moved elsewhere.
+std::vector<locate::Match> stripMatches(const Eigen::Affine2d& pose, std::size_t count, double noise,
+                                double outliers, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<locate::Match> matches;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector2d q(random.uniform(100.0, 110.0), random.uniform(50.0, 52.0));
+    Eigen::Vector2d p = pose * q;
+    if (random.chance(outliers)) {
+      p += Eigen::Vector2d(random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0));
+    } else if (noise > 0.0) {
+      p += Eigen::Vector2d(random.normal(noise), random.normal(noise));
+    }
+    matches.push_back({q, p});
+  }
+  return matches;
+}
+
+/// Largest displacement between two maps over the strip [m].
+double gap(const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
+  double farthest = 0.0;
+  for (const double x : {100.0, 110.0}) {
+    for (const double y : {50.0, 52.0}) {
+      farthest = std::max(farthest, (a * Eigen::Vector2d(x, y) - b * Eigen::Vector2d(x, y)).norm());
+    }
+  }
+  return farthest;
+}
+
+TEST(EstimateAffine, RecoversExactMaps) {
+  for (const double turn : {0.0, 0.4, -2.0}) {
+    for (const double yaw : {-3.0, -0.2, 0.0, 0.2, 2.5}) {
+      const Eigen::Matrix2d axes = rotation2(turn);
+      const Eigen::Affine2d truth = locate::poseOf(yaw, 1.3, 0.7, axes);
+      const auto estimate = estimateAffine(stripMatches(truth, 50, 0.0, 0.0, 1), axes, {});
+      ASSERT_TRUE(estimate.ok());
+      EXPECT_LT(gap(estimate.fixed_from_moving, truth), 1e-9);
+      EXPECT_NEAR(estimate.yaw, yaw, 1e-10);
+      EXPECT_NEAR(estimate.scale.x(), 1.3, 1e-10);
+      EXPECT_NEAR(estimate.scale.y(), 0.7, 1e-10);
+      EXPECT_EQ(estimate.inliers.size(), 50U);
+      EXPECT_LT(estimate.rms, 1e-9);
+    }
+  }
+}
+
+TEST(EstimateAffine, ClosedFormBeatsEveryNeighbour) {
+  const Eigen::Matrix2d axes = rotation2(0.3);
+  const auto matches = stripMatches(locate::poseOf(0.1, 1.1, 0.9, axes), 60, 0.3, 0.0, 5);
+  const auto cost = [&](const Eigen::Affine2d& pose) {
+    double sum = 0.0;
+    for (const locate::Match& m : matches) sum += (m.fixed - pose * m.moving).squaredNorm();
+    return sum;
+  };
+  const auto fit = fitScaledRotation(matches, {}, axes);
+  ASSERT_TRUE(fit);
+  const double best = cost(fit->fixed_from_moving);
+  const Eigen::Vector2d middle(105.0, 51.0);
+  for (const double yaw : {-1e-3, 0.0, 1e-3}) {
+    for (const double sx : {-1e-3, 0.0, 1e-3}) {
+      for (const double sy : {-1e-3, 0.0, 1e-3}) {
+        Eigen::Affine2d pose =
+            locate::poseOf(fit->yaw + yaw, fit->scale.x() + sx, fit->scale.y() + sy, axes);
+        pose.translation() = fit->fixed_from_moving * middle - pose.linear() * middle;
+        EXPECT_GE(cost(pose), best - 1e-9);
+      }
+    }
+  }
+}
+
+TEST(EstimateAffine, WithstandsOutliersAndNoise) {
+  const Eigen::Affine2d truth = locate::poseOf(0.2, 1.3, 0.7, Eigen::Matrix2d::Identity());
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const auto matches = stripMatches(truth, 2000, 0.03, 0.4, seed);
+    const auto estimate = estimateAffine(matches, Eigen::Matrix2d::Identity(), {});
+    ASSERT_TRUE(estimate.ok());
+    EXPECT_LT(gap(estimate.fixed_from_moving, truth), 0.015);
+    EXPECT_NEAR(static_cast<double>(estimate.inliers.size()), 1200.0, 60.0);
+    EXPECT_NEAR(estimate.rms, 0.03 * std::sqrt(2.0), 0.02);
+  }
+}
+
+TEST(EstimateAffine, FreeModelSeesShearThatTheOtherCannot) {
+  Eigen::Affine2d truth = Eigen::Affine2d::Identity();
+  truth.linear() = composeHorizontal({.yaw = 0.1, .scale_x = 1.1, .scale_y = 0.9, .shear = 0.2});
+  const auto matches = stripMatches(truth, 200, 0.0, 0.2, 4);
+  AffineOptions options;
+  options.model = AffineModel::kFree;
+  const auto free = estimateAffine(matches, Eigen::Matrix2d::Identity(), options);
+  ASSERT_TRUE(free.ok());
+  EXPECT_LT(gap(free.fixed_from_moving, truth), 1e-6);
+  EXPECT_NEAR(free.shear, 0.2, 1e-6);
+  const auto tied = estimateAffine(matches, Eigen::Matrix2d::Identity(), {});
+  ASSERT_TRUE(tied.ok());
+  EXPECT_EQ(tied.shear, 0.0);
+  EXPECT_GT(gap(tied.fixed_from_moving, truth), 0.05);
+}
+
+TEST(EstimateAffine, NamesWhatIsMissing) {
+  const Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();
+  const Eigen::Affine2d truth = locate::poseOf(0.0, 1.0, 1.0, axes);
+  const auto few = estimateAffine(stripMatches(truth, 5, 0.0, 0.0, 1), axes, {});
+  EXPECT_EQ(few.status, AffineStatus::kTooFewMatches);
+  EXPECT_EQ(few.matches, 5U);
+  EXPECT_TRUE(few.fixed_from_moving.matrix().array().isNaN().all());
+
+  std::vector<locate::Match> line;
+  std::vector<locate::Match> spot;
+  std::vector<locate::Match> mirrored;
+  for (int k = 0; k < 40; ++k) {
+    line.push_back({Eigen::Vector2d(k, 0.0), Eigen::Vector2d(k, 1.0)});
+    spot.push_back({Eigen::Vector2d(1.0, 2.0), Eigen::Vector2d(1.0, 2.0)});
+    const Eigen::Vector2d q(k % 8, k / 8);
+    mirrored.push_back({q, Eigen::Vector2d(q.x(), -q.y())});
+  }
+  for (const AffineModel model : {AffineModel::kScaledRotation, AffineModel::kFree}) {
+    AffineOptions options;
+    options.model = model;
+    for (const auto& matches : {line, spot, mirrored}) {
+      const auto estimate = estimateAffine(matches, axes, options);
+      EXPECT_EQ(estimate.status, AffineStatus::kDegenerate);
+      EXPECT_TRUE(std::isnan(estimate.rms));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace agricolmap::paper

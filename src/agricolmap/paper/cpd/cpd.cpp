@@ -1,0 +1,300 @@
+#include "agricolmap/paper/cpd/cpd.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "agricolmap/paper/cpd/cpd_accelerate.hpp"
+#include "agricolmap/paper/cpd/cpd_fit.hpp"
+#include "agricolmap/paper/cpd/cpd_level.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
+
+namespace agricolmap::paper {
+
+std::string_view describe(CpdStatus status) {
+  switch (status) {
+    case CpdStatus::kConverged:
+      return "converged";
+    case CpdStatus::kIterationLimit:
+      return "stopped at the iteration limit";
+    case CpdStatus::kTooFewPoints:
+      return "too few vegetation points in the overlap";
+    case CpdStatus::kNoMatches:
+      return "too few vegetation points found a counterpart";
+    case CpdStatus::kDegenerate:
+      return "the matched points do not determine a transform";
+    case CpdStatus::kRanAway:
+      return "moved further from the start than a refinement may";
+  }
+  return "unknown";
+}
+
+void describe(OptionTable& table, CpdOptions& options) {
+  table.choice("model", options.model, {"affine", "scaled", "similarity", "rigid"},
+               "horizontal map: 6 parameters, 5 without shear, 4 with one scale, 3 without scale");
+  table.number("sigma_start", options.sigma_start, 0.005, 5.0, "m",
+               "kernel width of the first iteration: how wrong the start may be");
+  table.number("sigma_end", options.sigma_end, 0.002, 5.0, "m", "least kernel width");
+  table.number("decay", options.decay, 0.3, 0.99, "",
+               "most of the kernel width that is left from one level to the next");
+  table.number("sigma_height", options.sigma_height, 0.0, 10.0, "m",
+               "deviation of the height differences; 0 leaves the heights out");
+  table.flag("vertical_scale", options.vertical_scale,
+             "estimate a vertical scale beside the vertical offset");
+  table.number("outlier_share", options.outlier_share, 0.001, 0.95, "",
+               "share of moving points expected to have no counterpart, w in CPD");
+  table.number(
+      "border", options.border, 0.0, 10.0, "",
+      "moving points nearer to the edge of their map count only as surroundings of others, "
+      "in kernel widths");
+  table.number("start_weight", options.start_weight, 0.0, 10.0, "",
+               "pull of the start at sigma_start beside that of the matches; fades with the width");
+  table.flag("weights", options.weights,
+             "greener points count more (drawn to the sunny side of plants)");
+  table.integer("max_points", options.max_points, 100, 10000000, "",
+                "points per cloud; more are merged to squares");
+  table.integer("max_iterations", options.max_iterations, 1, 10000, "",
+                "most iterations at one kernel width");
+  table.number("tolerance", options.tolerance, 1e-7, 0.1, "m",
+               "motion per iteration that counts as standing still");
+  table.number("max_motion", options.max_motion, 0.001, 100.0, "m",
+               "motion from the start beyond which the refinement is thrown away");
+  table.number("min_matched", options.min_matched, 0.0, 1.0, "",
+               "least share of moving points with a counterpart");
+}
+
+namespace {
+
+constexpr std::size_t kMinPoints = 20;
+constexpr std::size_t kChunk = 256;
+
+/// What one expectation step leaves for the maximisation.
+struct Expectation {
+  CpdMoments moments;
+  double weight = 0.0;    ///< of all moving points
+  double square = 0.0;    ///< Σ W·|x − T(y)|² over pairs
+  double residual = 0.0;  ///< Σ W·|x̄ − T(ȳ)|² over moving points
+  std::size_t pairs = 0;
+  Expectation& operator+=(const Expectation& other) {
+    moments += other.moments;
+    weight += other.weight;
+    square += other.square;
+    residual += other.residual;
+    pairs += other.pairs;
+    return *this;
+  }
+};
+
+/// Posterior of the outliers' uniform distribution, in units of the kernel sum: the article's
+/// c = (2πσ²)^{D/2}·w/(1 − w)·M/V, with the mixture's points per ground for M/V.
+double outlierTerm(const CpdClouds& clouds, double sigma, const CpdOptions& options) {
+  const double horizontal = 2.0 * std::numbers::pi * sigma * sigma * clouds.density;
+  const double deviation = options.sigma_height;
+  const double width = std::sqrt(2.0 * std::numbers::pi) * deviation;
+  const double vertical =
+      deviation > 0.0 && width < clouds.height_range ? width / clouds.height_range : 1.0;
+  return options.outlier_share / (1.0 - options.outlier_share) * horizontal * vertical;
+}
+
+Expectation expectation(const CpdLevel& level, const CpdPose& pose, double sigma, double outlier,
+                        double sigma_height) {
+  const CpdWidths widths{static_cast<float>(sigma), static_cast<float>(sigma_height)};
+  return parallelSum(
+      level.data.size(), kChunk, Expectation{}, [&](std::size_t begin, std::size_t end) {
+        Expectation part;
+        for (std::size_t i = begin; i < end; ++i) {
+          const map::VegetationPoint& p = level.data[i].point;
+          const Eigen::Vector3d& mean = level.data[i].mean;
+          const Eigen::Vector3d moved = applyPose(pose, p.position, p.height);
+          const CpdSums sums = level.fixed.at(moved.cast<float>(), widths);
+          part.pairs += sums.pairs;
+          part.weight += p.weight;
+          const double found = static_cast<double>(sums.weight);
+          if (!(found > 0.0)) continue;
+          const double w = p.weight * found / (found + outlier);
+          const Eigen::Vector3d target = moved + sums.mean_offset.cast<double>();
+          part.moments.add(w, mean, target);
+          part.square += w * static_cast<double>(sums.square);
+          part.residual += w * (target.head<2>() - pose.plane * mean.head<2>()).squaredNorm();
+        }
+        return part;
+      });
+}
+
+/// Largest motion of the moving points between two poses [m].
+double motionBetween(const CpdClouds& clouds, const CpdPose& a, const CpdPose& b) {
+  double motion = 0.0;
+  for (const Eigen::Vector2d& corner : clouds.corners) {
+    motion = std::max(motion, (a.plane * corner - b.plane * corner).norm());
+  }
+  return motion;
+}
+
+CpdPose toCentred(const CpdPose& pose, const CpdClouds& clouds) {
+  CpdPose result = pose;
+  result.plane.translation() = pose.plane * clouds.moving_origin - clouds.fixed_origin;
+  return result;
+}
+
+CpdPose fromCentred(const CpdPose& pose, const CpdClouds& clouds) {
+  CpdPose result = pose;
+  result.plane.translation() += clouds.fixed_origin - pose.plane.linear() * clouds.moving_origin;
+  return result;
+}
+
+/// A pose as numbers of like size, all in metres: where three corners of the strip go, the height
+/// offset and the height of 1 m.
+Eigen::VectorXd toVector(const CpdPose& pose, const CpdClouds& clouds) {
+  Eigen::VectorXd vector(8);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    vector.segment<2>(2 * i) = pose.plane * clouds.corners[static_cast<std::size_t>(i)];
+  }
+  vector(6) = pose.height_offset;
+  vector(7) = pose.height_scale;
+  return vector;
+}
+
+CpdPose fromVector(const Eigen::VectorXd& vector, const CpdClouds& clouds) {
+  const Eigen::Vector2d& corner = clouds.corners[0];
+  Eigen::Matrix2d sides;
+  sides << clouds.corners[1] - corner, clouds.corners[2] - corner;
+  Eigen::Matrix2d images;
+  images << vector.segment<2>(2) - vector.head<2>(), vector.segment<2>(4) - vector.head<2>();
+  CpdPose pose;
+  pose.plane.linear() = images * sides.inverse();
+  pose.plane.translation() = vector.head<2>() - pose.plane.linear() * corner;
+  pose.height_offset = vector(6);
+  pose.height_scale = vector(7);
+  return pose;
+}
+
+/// Expectation and maximisation, level by level, until the points stand still at the least σ.
+class Refiner {
+ public:
+  Refiner(const CpdClouds& clouds, const CpdOptions& options, const Eigen::Matrix2d& scale_axes,
+          CpdResult& result)
+      : clouds_(clouds), options_(options), scale_axes_(scale_axes), result_(result) {}
+
+  /// Fills in the result from `start` (centred clouds); returns the pose.
+  CpdPose run(const CpdPose& start) {
+    start_ = start;
+    CpdPose pose = start;
+    double sigma = options_.sigma_start;
+    for (;;) {
+      const bool last = sigma <= options_.sigma_end;
+      bool still = false;
+      const double estimate =
+          climb(makeCpdLevel(clouds_, pose, sigma, last, options_), last, pose, still);
+      if (failed_) return pose;
+      if (last) {
+        result_.status = still ? CpdStatus::kConverged : CpdStatus::kIterationLimit;
+        return pose;
+      }
+      sigma = std::max(options_.sigma_end, std::min(estimate, options_.decay * sigma));
+    }
+  }
+
+ private:
+  /// Iterates at one σ; returns the article's estimate of σ. `still`: stopped moving.
+  double climb(const CpdLevel& level, bool last, CpdPose& pose, bool& still) {
+    const double tolerance = last ? options_.tolerance : kCoarseTolerance * level.sigma;
+    const double outlier = outlierTerm(clouds_, level.sigma, options_);
+    const double relative = level.sigma / options_.sigma_start;
+    const double start_weight = last ? 0.0 : options_.start_weight * relative * relative;
+    AndersonMixer mixer(kMixerMemory);
+    double estimate = level.sigma;
+    double before = std::numeric_limits<double>::infinity();
+    CpdPose image = pose;
+    for (int i = 0; i < options_.max_iterations && !still; ++i) {
+      Expectation sums = expectation(level, pose, level.sigma, outlier, options_.sigma_height);
+      record(sums, level.sigma);
+      if (start_weight > 0.0) addStart(level, pose, start_weight, sums.moments);
+      const std::optional<CpdPose> fit =
+          fitCpdPose(sums.moments, options_.model, scale_axes_, options_.vertical_scale);
+      if (!fit || result_.matched_share < options_.min_matched) return fail();
+      image = *fit;
+      estimate = std::sqrt(0.5 * sums.square / sums.moments.weight);
+      const double step = motionBetween(clouds_, pose, image);
+      if (step > 2.0 * before) mixer.restart();  // mixing overshot: plain EM from here
+      before = step;
+      const CpdPose mixed = fromVector(
+          mixer.next(toVector(pose, clouds_), toVector(image, clouds_), level.sigma), clouds_);
+      still = std::max(step, motionBetween(clouds_, pose, mixed)) < tolerance;
+      pose = mixed;
+      result_.motion = motionBetween(clouds_, start_, pose);
+      if (result_.motion > options_.max_motion) {
+        failed_ = true;
+        result_.status = CpdStatus::kRanAway;
+        return estimate;
+      }
+    }
+    // What mixing proposes need not be of the model; what EM returns is.
+    pose = image;
+    return estimate;
+  }
+
+  /// Gives every datum a second counterpart, where the start puts it: coarse levels see too little
+  /// of a sparse field to be let free. Heights stay out of it.
+  void addStart(const CpdLevel& level, const CpdPose& pose, double weight,
+                CpdMoments& moments) const {
+    for (const CpdDatum& datum : level.data) {
+      Eigen::Vector3d target;
+      target << start_.plane * datum.mean.head<2>(),
+          pose.height_scale * datum.mean.z() + pose.height_offset;
+      moments.add(weight * datum.point.weight, datum.mean, target);
+    }
+  }
+
+  double fail() {
+    failed_ = true;
+    result_.status = result_.matched_share >= options_.min_matched ? CpdStatus::kDegenerate
+                                                                   : CpdStatus::kNoMatches;
+    return 0.0;
+  }
+
+  void record(const Expectation& sums, double sigma) {
+    ++result_.iterations;
+    result_.pairs += sums.pairs;
+    result_.sigma = sigma;
+    result_.matched_share = sums.weight > 0.0 ? sums.moments.weight / sums.weight : 0.0;
+    result_.rms = sums.moments.weight > 0.0 ? std::sqrt(sums.residual / sums.moments.weight) : 0.0;
+  }
+
+  static constexpr std::size_t kMixerMemory = 5;
+  /// Before the last level, standing still means moving less than this share of σ.
+  static constexpr double kCoarseTolerance = 0.02;
+
+  const CpdClouds& clouds_;
+  const CpdOptions& options_;
+  const Eigen::Matrix2d& scale_axes_;
+  CpdResult& result_;
+  CpdPose start_;
+  bool failed_ = false;
+};
+
+}  // namespace
+
+CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
+                      const std::vector<map::VegetationPoint>& moving, const CpdPose& start,
+                      const CpdOptions& options, const Eigen::Matrix2d& scale_axes) {
+  checkOptions(options);
+  if (options.sigma_end > options.sigma_start) {
+    throw UsageError("sigma_end of the point refinement must not exceed sigma_start");
+  }
+  CpdResult result;
+  result.pose = start;
+  if (fixed.size() < kMinPoints || moving.size() < kMinPoints) return result;
+  const CpdClouds clouds = makeCpdClouds(fixed, moving, start, options);
+  result.fixed_points = clouds.fixed.size();
+  result.moving_points = clouds.moving.size();
+  if (clouds.fixed.size() < kMinPoints || clouds.moving.size() < kMinPoints) return result;
+  const CpdPose refined =
+      Refiner(clouds, options, scale_axes, result).run(toCentred(start, clouds));
+  if (result.usable()) result.pose = fromCentred(refined, clouds);
+  return result;
+}
+
+}  // namespace agricolmap::paper

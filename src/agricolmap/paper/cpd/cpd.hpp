@@ -1,0 +1,99 @@
+// Stage 6: affine coherent point drift between vegetation points, from a good start to centimetres
+// (Myronenko & Song, "Point set registration: coherent point drift", TPAMI 2010).
+//
+// What differs from the article:
+// (1) The fixed points are the mixture and the moving ones the data: the ground robot's strip is
+//     covered by the drone's map, not the reverse, and in the article's roles the drone's points
+//     around the strip would stretch it.
+// (2) The Gaussians are cut off at 3σ and found through a grid: the cost is that of near pairs.
+// (3) σ shrinks level by level from the start's uncertainty, at least as fast as the article's
+//     estimate of it. Points are merged to squares of σ/2 meanwhile, so that coarse levels cost
+//     next to nothing. Within a level EM is accelerated: it crawls where plants are wider than σ.
+// (4) A point is pulled to the mean of the fixed points around it *relative to* the mean of the
+//     moving points around it. Without that, every point runs up the slope of its own plant, and
+//     the map shrinks or stretches by up to a per cent as the plants at its edges happen to lie.
+//     It needs the same surroundings in both maps, so points at the edge of what the moving map
+//     shows only lend their surroundings to others.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "agricolmap/map/vegetation.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap::paper {
+
+/// Which horizontal maps the refinement may choose from. Tilt is never estimated from the points:
+/// near-planar data cannot carry it.
+enum class CpdModel {
+  kAffine,      ///< shift, yaw, two scales, shear: 6 parameters
+  kScaled,      ///< shift, yaw, two scales along the moving file's axes: 5 parameters
+  kSimilarity,  ///< shift, yaw, one scale: 4 parameters
+  kRigid,       ///< shift, yaw: 3 parameters
+};
+
+struct CpdOptions {
+  CpdModel model = CpdModel::kAffine;
+  double sigma_start = 0.15;    ///< σ of the first iteration: how wrong the start may be [m]
+  double sigma_end = 0.025;     ///< least σ [m]
+  double decay = 0.6;           ///< most of σ that is left from one level to the next
+  double sigma_height = 0.15;   ///< deviation of the height difference [m]; 0: heights unused
+  bool vertical_scale = false;  ///< estimate a vertical scale beside the offset
+  double outlier_share = 0.5;   ///< w, prior share of moving points without a counterpart
+  double border = 2.0;          ///< nearer than this to the edge of the moving map: no data [σ]
+  double start_weight = 0.15;   ///< pull of the start at sigma_start, per point; 0 at sigma_end
+  bool weights = false;         ///< greener points count more; light then shifts the plants
+  int max_points = 40000;       ///< per cloud; more are merged to squares
+  int max_iterations = 50;      ///< at one σ
+  double tolerance = 1e-4;      ///< motion of the strip's points that counts as standing still [m]
+  double max_motion = 0.5;      ///< motion from the start that is no refinement any more [m]
+  double min_matched = 0.1;     ///< least share of the moving points matched in the end
+};
+void describe(OptionTable& table, CpdOptions& options);
+
+enum class CpdStatus {
+  kConverged,
+  kIterationLimit,  ///< usable, still moving a little
+  kTooFewPoints,    ///< fewer than 20 points on one side (after cropping to the overlap)
+  kNoMatches,       ///< less than `min_matched` of the moving points found a counterpart
+  kDegenerate,      ///< the matched points determine no map of the model
+  kRanAway,         ///< moved further than `max_motion`
+};
+std::string_view describe(CpdStatus status);
+
+/// Where the refinement starts, and what it returns: fixed = plane · moving horizontally,
+/// fixed_z = height_scale · moving_z + height_offset; levelled frames [m].
+struct CpdPose {
+  Eigen::Affine2d plane = Eigen::Affine2d::Identity();
+  double height_offset = 0.0;
+  double height_scale = 1.0;
+};
+
+struct CpdResult {
+  CpdStatus status = CpdStatus::kTooFewPoints;
+  CpdPose pose;                ///< refined; the start unless usable()
+  double sigma = 0.0;          ///< of the last iteration [m]
+  double matched_share = 0.0;  ///< mean posterior of not being an outlier, of the data
+  double rms = 0.0;            ///< of what still pulls at the matched points [m]
+  double motion = 0.0;         ///< largest motion of a moving point by the refinement [m]
+  int iterations = 0;
+  std::size_t fixed_points = 0;   ///< used
+  std::size_t moving_points = 0;  ///< used
+  std::size_t pairs = 0;          ///< kernel evaluations in all iterations
+  bool usable() const {
+    return status == CpdStatus::kConverged || status == CpdStatus::kIterationLimit;
+  }
+};
+
+/// Refines `start`. `scale_axes`: directions of the moving file's x and y axes (unit columns) in
+/// the moving points' frame, used by CpdModel::kScaled. Failing to register is a status; the same
+/// result on any number of threads.
+CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
+                      const std::vector<map::VegetationPoint>& moving, const CpdPose& start,
+                      const CpdOptions& options,
+                      const Eigen::Matrix2d& scale_axes = Eigen::Matrix2d::Identity());
+
+}  // namespace agricolmap::paper

@@ -1,0 +1,50 @@
+// The paper's data association (Sec. III): dense flow between grid maps and a vote for its coherent
+// part.
+#pragma once
+
+#include "agricolmap/paper/describe/descriptor_map.hpp"
+#include "agricolmap/locate/association.hpp"
+#include "agricolmap/paper/flow/patch_match.hpp"
+#include "agricolmap/paper/vote/coherent_vote.hpp"
+
+namespace agricolmap::paper {
+
+struct FlowAssociationOptions {
+  DescribeOptions describe;  ///< data term and descriptors
+  CostOptions cost;          ///< α and β
+  FlowOptions flow;
+  VoteOptions vote;
+  /// Matches with the moving map warped beforehand where the guess may be off by more than the
+  /// descriptors tolerate; not in the paper.
+  bool warps = true;
+  double heading_tolerance_deg = 8.0;  ///< heading error to match with without a warp [°]
+  double scale_tolerance = 0.18;       ///< and error of a scale's logarithm
+  /// Matches the placements found again, each with the moving map warped by it; not in the
+  /// paper.
+  bool rematch = true;
+  int seed = 1;  ///< of the random search
+};
+void describe(OptionTable& table, FlowAssociationOptions& options);
+
+/// Descriptors are only so tolerant of turning and stretching. With `warps`, what the guess allows
+/// is cut into parts within the tolerances, and the moving map is matched once per part, warped to
+/// its middle. With `rematch`, what was found is confirmed with the moving map laid as found: right
+/// placements then match nearly everywhere and wrong ones do not, so the scores tell more. A score
+/// is the number of inliers, with warps that stretch the map counted as if they did not. With both
+/// off this is the paper's method.
+///
+/// Fills the counts `seeds`, `matches` (confirmed by the backward flow), `inliers` of the best
+/// placement and `inlier_share` = inliers / matches, and runs the stages `describe`, `flow`,
+/// `vote`.
+class FlowAssociation : public locate::Association {
+ public:
+  /// Throws UsageError for options outside their limits.
+  explicit FlowAssociation(const FlowAssociationOptions& options);
+  locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
+                              StageTimes& times) const override;
+
+ private:
+  FlowAssociationOptions options_;
+};
+
+}  // namespace agricolmap::paper

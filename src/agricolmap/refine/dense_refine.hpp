@@ -1,0 +1,44 @@
+// Stage 7b: dense refinement: Gauss–Newton on the signal maps themselves, coarse to fine, for a
+// horizontal affine. Robust against what the two views do not share (leaves, weeds, shadows).
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap::refine {
+
+struct DenseRefineOptions {
+  int iterations = 15;         ///< per level at most
+  double robust = 2.0;         ///< residuals beyond this many deviations fade (Cauchy)
+  double stop = 0.002;         ///< done when no corner moves by more than this share of a cell
+  double prior_weight = 1e-3;  ///< pull towards the level's start, share of the data's curvature
+  double max_move = 4.0;       ///< a level may move a corner by this many cells at most
+  int hops = 8;      ///< rounds of looking into neighbouring basins at most, see basins.hpp
+  double hop = 1.0;  ///< how far they are looked for [cells]
+};
+void describe(OptionTable& table, DenseRefineOptions& options);
+
+enum class RefineStatus { kConverged, kNoOverlap, kDiverged };
+
+struct DenseRefineResult {
+  RefineStatus status = RefineStatus::kNoOverlap;
+  Eigen::Affine2d fixed_from_moving = Eigen::Affine2d::Identity();  ///< meaningful if converged
+  int iterations = 0;
+  double overlap = 0.0;      ///< share of the moving map's seen cells that the fixed map sees
+  double correlation = 0.0;  ///< robustly weighted, over both channels
+};
+
+/// Minimises Σ_channels Σ_cells ρ((moving(x) − gain · fixed(A·x)) / σ) over a horizontal affine A,
+/// from `start`. Both maps at the same cell size, levelled frames.
+///
+/// The gain stands at the map that is read elsewhere when A changes: so the sum falls as the
+/// correlation rises. With the gain at the moving map, Σ fixed(A·x)² alone would draw the strip to
+/// where the fixed map is calm, the more the less the maps have in common (ExG of drilled wheat).
+DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap& moving,
+                              const Eigen::Affine2d& start, const DenseRefineOptions& options);
+
+}  // namespace agricolmap::refine

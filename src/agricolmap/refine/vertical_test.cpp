@@ -1,0 +1,152 @@
+#include "agricolmap/refine/vertical.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "agricolmap/core/random.hpp"
+
+namespace agricolmap::refine {
+namespace {
+
+constexpr double kOffset = 0.37;
+const Eigen::Vector2d kSlope(0.01, -0.02);
+
+/// Rows of plants 0.75 m apart: `gap` of the way across is bare soil.
+double canopyAt(const Eigen::Vector2d& p, double tall, double gap) {
+  const double across = std::abs(std::remainder(p.y(), 0.75)) / 0.375;  // 0 in the row, 1 between
+  if (across > 1.0 - gap) return 0.0;
+  return tall * (0.6 + 0.4 * std::sin(7.0 * p.x() + 3.0 * p.y()));
+}
+
+map::GridMap emptyMap(double width, double height) {
+  map::GridMap map;
+  map.frame.cell = 0.02;
+  map.frame.cols = static_cast<int>(std::lround(width / 0.02));
+  map.frame.rows = static_cast<int>(std::lround(height / 0.02));
+  map.weight = Raster<float>(map.frame.rows, map.frame.cols);
+  map.height = map.weight;
+  map.exg = map.weight;
+  return map;
+}
+
+/// What a sensor sees that shows `seen` of the canopy's height, over the plane kOffset, kSlope when
+/// `fixed`.
+map::GridMap view(double tall, double gap, double seen, bool fixed, std::uint64_t seed) {
+  map::GridMap map = emptyMap(6.0, 2.2);
+  Random random(seed);
+  for (int r = 0; r < map.frame.rows; ++r) {
+    for (int c = 0; c < map.frame.cols; ++c) {
+      const Eigen::Vector2d p = map.frame.centre(r, c);
+      const double ground = fixed ? kOffset + kSlope.dot(p) : 0.0;
+      map.weight(r, c) = 1.0F;
+      map.height(r, c) =
+          static_cast<float>(ground + seen * canopyAt(p, tall, gap) + random.normal(0.004));
+      ++map.filled;
+    }
+  }
+  return map;
+}
+
+double worstError(const VerticalResult& result) {
+  double worst = 0.0;
+  for (const Eigen::Vector2d& p : {Eigen::Vector2d(0, 0), {6, 0}, {0, 2.2}, {6, 2.2}}) {
+    const double found = result.offset + result.slope.dot(p - result.about);
+    worst = std::max(worst, std::abs(found - kOffset - kSlope.dot(p)));
+  }
+  return worst;
+}
+
+TEST(Vertical, ACanopySeenAtHalfItsHeightDoesNotLiftTheGround) {
+  for (const double tall : {0.0, 0.15, 1.5}) {
+    const VerticalResult result =
+        fitVertical(view(tall, 0.4, 0.5, true, 1), view(tall, 0.4, 1.0, false, 2),
+                    Eigen::Affine2d::Identity(), {});
+    ASSERT_EQ(result.status, VerticalStatus::kOk);
+    EXPECT_LT(worstError(result), 0.005) << tall;
+    EXPECT_LT(result.residual, 0.01) << tall;
+    EXPECT_GT(result.ground_share, 0.2) << tall;
+    if (tall > 1.0) {
+      EXPECT_NEAR(result.canopy_gain, 0.5, 0.05);
+    }
+  }
+}
+
+TEST(Vertical, AFewGroundCellsAreEnough) {
+  const VerticalResult result =
+      fitVertical(view(1.0, 0.12, 0.5, true, 3), view(1.0, 0.12, 1.0, false, 4),
+                  Eigen::Affine2d::Identity(), {});
+  ASSERT_EQ(result.status, VerticalStatus::kOk);
+  EXPECT_LT(worstError(result), 0.01);
+}
+
+TEST(Vertical, AClosedCanopyIsToldByItsGroundShare) {
+  const VerticalResult open = fitVertical(
+      view(1.0, 0.4, 0.5, true, 5), view(1.0, 0.4, 1.0, false, 6), Eigen::Affine2d::Identity(), {});
+  const VerticalResult closed = fitVertical(
+      view(1.0, 0.0, 0.5, true, 5), view(1.0, 0.0, 1.0, false, 6), Eigen::Affine2d::Identity(), {});
+  EXPECT_LT(closed.ground_share, 0.5 * open.ground_share);
+}
+
+// From the side no soil is seen between the rows; what levelling found of it in few points counts.
+TEST(Vertical, UnderAClosedCanopyTheLevelledPlanesCount) {
+  map::GridMap fixed = view(1.0, 0.12, 0.3, true, 11);
+  map::GridMap moving = view(1.0, 0.0, 1.0, false, 12);
+  Random random(13);
+  for (int r = 0; r < fixed.frame.rows; ++r) {
+    for (int c = 0; c < fixed.frame.cols; ++c) {
+      const double plane = kOffset + kSlope.dot(fixed.frame.centre(r, c));
+      fixed.height(r, c) += static_cast<float>(-plane);
+      moving.height(r, c) += static_cast<float>(random.uniform(0.0, 0.5));
+    }
+  }
+  const VerticalResult unknown = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
+  EXPECT_GT(std::abs(unknown.offset), 0.1);
+  fixed.ground_deviation = moving.ground_deviation = 0.02;
+  const VerticalResult known = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
+  EXPECT_EQ(known.offset, 0.0);
+  EXPECT_LT(known.residual, unknown.residual);
+  EXPECT_GE(known.residual, 0.02);
+}
+
+TEST(Vertical, FewGroundCellsThatFitCountBeforeLevelledPlanes) {
+  map::GridMap fixed = emptyMap(6.0, 2.2);
+  map::GridMap moving = fixed;
+  fixed.ground_deviation = moving.ground_deviation = 0.001;
+  Random random(17);
+  for (int r = 0; r < fixed.frame.rows; ++r) {
+    for (int c = 0; c < fixed.frame.cols; ++c) {
+      // Either sees the ground through one cell in eight, mostly not the same.
+      const auto canopy = [&] { return random.chance(0.125) ? 0.0 : random.uniform(0.04, 0.2); };
+      fixed.weight(r, c) = moving.weight(r, c) = 1.0F;
+      fixed.height(r, c) = static_cast<float>(canopy() + random.normal(0.005));
+      // Levelling took something 6 cm above the ground for it.
+      moving.height(r, c) = static_cast<float>(canopy() - 0.06 + random.normal(0.005));
+    }
+  }
+  const VerticalResult result = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
+  EXPECT_LT(result.ground_share, 0.05);
+  EXPECT_NEAR(result.offset, 0.06, 0.02);
+}
+
+TEST(Vertical, MapsThatDoNotOverlapHaveNoHeight) {
+  const Eigen::Affine2d away(Eigen::Translation2d(100.0, 0.0));
+  EXPECT_EQ(
+      fitVertical(view(0.1, 0.4, 0.5, true, 7), view(0.1, 0.4, 1.0, false, 8), away, {}).status,
+      VerticalStatus::kTooFewCells);
+}
+
+TEST(Vertical, ATiltThatLevelledMapsCannotHaveIsRefused) {
+  map::GridMap fixed = view(0.1, 0.4, 0.5, true, 9);
+  for (int r = 0; r < fixed.frame.rows; ++r) {
+    for (int c = 0; c < fixed.frame.cols; ++c) {
+      fixed.height(r, c) += static_cast<float>(0.3 * fixed.frame.centre(r, c).x());
+    }
+  }
+  EXPECT_EQ(
+      fitVertical(fixed, view(0.1, 0.4, 1.0, false, 10), Eigen::Affine2d::Identity(), {}).status,
+      VerticalStatus::kTooSteep);
+}
+
+}  // namespace
+}  // namespace agricolmap::refine

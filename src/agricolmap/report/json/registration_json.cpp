@@ -1,0 +1,266 @@
+#include "agricolmap/report/json/registration_json.hpp"
+
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/report/draw/utf8.hpp"
+
+namespace agricolmap::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+/// Null stands for numbers that JSON lacks.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+template <typename Derived>
+Json vectorJson(const Eigen::MatrixBase<Derived>& vector) {
+  Json json = Json::array();
+  for (Eigen::Index i = 0; i < vector.size(); ++i) json.push_back(number(vector(i)));
+  return json;
+}
+
+/// Row-major, nested.
+template <typename Derived>
+Json matrixJson(const Eigen::MatrixBase<Derived>& matrix) {
+  Json json = Json::array();
+  for (Eigen::Index r = 0; r < matrix.rows(); ++r) json.push_back(vectorJson(matrix.row(r)));
+  return json;
+}
+
+Json stringsJson(const std::vector<std::string>& strings) {
+  Json json = Json::array();
+  for (const std::string& text : strings) json.push_back(validUtf8(text));
+  return json;
+}
+
+Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::GridMap& map) {
+  Json json;
+  json["path"] = validUtf8(cloud.name);
+  json["points"] = cloud.size();
+  json["dropped_points"] = cloud.dropped_points;
+  json["has_colour"] = cloud.hasColour();
+  json["origin_m"] = vectorJson(cloud.origin);
+  const Box3 box = boundingBox(cloud);
+  json["box_min_m"] = vectorJson((cloud.origin + box.min.cast<double>()).eval());
+  json["box_max_m"] = vectorJson((cloud.origin + box.max.cast<double>()).eval());
+  json["ground"] = {{"tilt_deg", number(levelling.tilt * kDegPerRad)},
+                    {"roughness_m", number(levelling.roughness)},
+                    {"cells", levelling.cells},
+                    {"under_canopy", levelling.under_canopy}};
+  json["map"] = {{"cell_m", number(map.frame.cell)},
+                 {"rows", map.frame.rows},
+                 {"cols", map.frame.cols},
+                 {"filled_cells", map.filled},
+                 {"points", map.points}};
+  return json;
+}
+
+Json transformJson(const Cloud& fixed, const Cloud& moving, const pipeline::Registration& registration) {
+  if (!registration.has_transform) return nullptr;
+  Json json;
+  json["matrix"] = matrixJson(registration.fixed_from_moving.matrix());
+  json["local"] = {{"matrix", matrixJson(registration.local_fixed_from_moving.matrix())},
+                   {"fixed_origin_m", vectorJson(fixed.origin)},
+                   {"moving_origin_m", vectorJson(moving.origin)}};
+  const HorizontalParts& parts = registration.parts;
+  const Eigen::Vector2d& tilt = registration.tilt;
+  json["parts"] = {{"yaw_deg", number(parts.yaw * kDegPerRad)},
+                   {"tilt_x_deg", number(tilt.x() * kDegPerRad)},
+                   {"tilt_y_deg", number(tilt.y() * kDegPerRad)},
+                   {"scale_x", number(parts.scale_x)},
+                   {"scale_y", number(parts.scale_y)},
+                   {"scale_z", number(registration.vertical_scale)},
+                   {"shear", number(parts.shear)},
+                   {"shift_m", vectorJson(registration.shift)},
+                   {"centre_m", vectorJson(registration.centre)}};
+  return json;
+}
+
+/// Root mean square distance of the matches behind the pose from where the pose puts them [m].
+double matchResidual(const pipeline::Registration& registration) {
+  double best = std::numeric_limits<double>::quiet_NaN();
+  for (const locate::Placement& placement : registration.association.placements) {
+    if (placement.matches.empty()) continue;
+    double sum = 0.0;
+    for (const locate::Match& match : placement.matches) {
+      sum += (registration.pose * match.moving - match.fixed).squaredNorm();
+    }
+    const double rms = std::sqrt(sum / static_cast<double>(placement.matches.size()));
+    if (!(rms >= best)) best = rms;
+  }
+  return best;
+}
+
+/// Root mean square offset of the agreeing blocks [m].
+double blockResidual(const verdict::Evidence& evidence) {
+  double sum = 0.0;
+  for (const verdict::BlockEvidence& block : evidence.blocks) {
+    if (block.agrees) sum += block.offset.squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(evidence.agreeing));
+}
+
+const char* toString(refine::VerticalStatus status) {
+  switch (status) {
+    case refine::VerticalStatus::kOk:
+      return "ok";
+    case refine::VerticalStatus::kTooFewCells:
+      return "too_few_cells";
+    case refine::VerticalStatus::kTooSteep:
+      return "too_steep";
+  }
+  return "unknown";
+}
+
+Json residualsJson(const pipeline::Registration& registration) {
+  if (!registration.has_transform) return nullptr;
+  Json json;
+  json["correlation"] = number(registration.correlation);
+  json["signal"] = number(std::sqrt(2.0 - 2.0 * registration.correlation));
+  json["overlap"] = number(registration.overlap);
+  json["match_rms_m"] = number(matchResidual(registration));
+  json["block_rms_m"] = number(blockResidual(registration.evidence));
+  const refine::VerticalResult& vertical = registration.vertical;
+  json["vertical"] = {{"status", toString(vertical.status)},
+                      {"residual_m", number(vertical.residual)},
+                      {"cells", vertical.cells},
+                      {"ground_share", number(vertical.ground_share)},
+                      {"canopy_gain", number(vertical.canopy_gain)}};
+  return json;
+}
+
+Json evidenceJson(const verdict::Evidence& evidence) {
+  Json json;
+  json["significance"] = number(evidence.significance);
+  json["uniqueness"] = number(evidence.uniqueness);
+  json["agreement"] = number(evidence.agreement());
+  json["agreeing_blocks"] = evidence.agreeing;
+  Json blocks = Json::array();
+  for (const verdict::BlockEvidence& block : evidence.blocks) {
+    blocks.push_back({{"place_m", vectorJson(block.place)},
+                      {"offset_m", vectorJson(block.offset)},
+                      {"agrees", block.agrees}});
+  }
+  json["blocks"] = std::move(blocks);
+  return json;
+}
+
+/// Of (shift_x, shift_y, shift_z [m], yaw [rad], scale_x, scale_y [relative]).
+Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registration) {
+  if (!registration.has_transform || !registration.uncertainty) return nullptr;
+  const verdict::PoseUncertainty& uncertainty = *registration.uncertainty;
+  constexpr std::array<int, 5> kPlace = {0, 1, 3, 4, 5};
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) covariance(kPlace[i], kPlace[j]) = uncertainty.covariance(i, j);
+  }
+  covariance(2, 2) = uncertainty.height_deviation * uncertainty.height_deviation;
+  // The levelled frame is turned into the file's by a tilt alone.
+  const Eigen::Affine3d file_from_levelled = registration.frames.levelled_from_fixed.inverse();
+  const Eigen::Vector3d centre =
+      file_from_levelled *
+      Eigen::Vector3d(uncertainty.centre.x(), uncertainty.centre.y(), registration.vertical.offset);
+  Json json;
+  json["parameters"] = {"shift_x_m", "shift_y_m", "shift_z_m", "yaw_rad", "scale_x", "scale_y"};
+  json["covariance"] = matrixJson(covariance);
+  json["deviations"] = vectorJson(covariance.diagonal().cwiseSqrt());
+  json["centre_m"] = vectorJson((fixed.origin + centre).eval());
+  json["axis_x"] = vectorJson(uncertainty.axes.col(0));
+  json["axis_y"] = vectorJson(uncertainty.axes.col(1));
+  json["expected_rms_m"] = number(uncertainty.expected_rms);
+  json["local_rms_m"] = number(uncertainty.local_rms);
+  return json;
+}
+
+Json alternativesJson(const pipeline::Registration& registration) {
+  Json json = Json::array();
+  for (const pipeline::Alternative& other : registration.alternatives) {
+    json.push_back({{"matrix", matrixJson(other.fixed_from_moving.matrix())},
+                    {"significance", number(other.significance)},
+                    {"relative", number(other.significance / registration.evidence.significance)}});
+  }
+  return json;
+}
+
+Json numbersJson(const std::vector<std::pair<std::string, double>>& numbers,
+                 const std::string& suffix) {
+  Json json = Json::object();
+  for (const auto& [name, value] : numbers) {
+    // Counts as whole numbers: "6012", not "6012.0".
+    const bool whole = suffix.empty() && std::abs(value) < 1e15 && value == std::floor(value);
+    json[validUtf8(name) + suffix] = whole ? Json(static_cast<std::int64_t>(value)) : number(value);
+  }
+  return json;
+}
+
+Json timesJson(const StageTimes& times) {
+  double total = 0.0;
+  for (const auto& [stage, seconds] : times.stages()) total += seconds;
+  return {{"total_s", number(total)}, {"stages", numbersJson(times.stages(), "_s")}};
+}
+
+std::size_t threadsInForce(int asked) {
+  if (asked > 0) return static_cast<std::size_t>(asked);
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+}  // namespace
+
+nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
+                                        const pipeline::Registration& registration, const StageTimes& times,
+                                        const RegistrationReportInfo& info) {
+  Json json;
+  json["format"] = "agricolmap-registration";
+  json["format_version"] = 1;
+  json["status"] = toString(registration.verdict.status);
+  json["reasons"] = stringsJson(registration.verdict.reasons);
+  json["probability"] = number(registration.verdict.probability);
+  json["plane_probability"] = number(registration.verdict.plane_probability);
+  json["transform"] = transformJson(fixed, moving, registration);
+  json["uncertainty"] = uncertaintyJson(fixed, registration);
+  json["alternatives"] = alternativesJson(registration);
+  json["prior"] = {{"matrix", matrixJson(info.prior.matrix())},
+                   {"source", validUtf8(info.prior_source)}};
+  json["residuals"] = residualsJson(registration);
+  json["evidence"] = evidenceJson(registration.evidence);
+  json["counts"] = numbersJson(registration.counts, "");
+  json["fixed"] = cloudJson(fixed, registration.frames.fixed, registration.fixed_map);
+  json["moving"] = cloudJson(moving, registration.frames.moving, registration.moving_map);
+  json["times"] = timesJson(times);
+  json["peak_memory_bytes"] = peakMemoryBytes();
+  json["threads"] = threadsInForce(info.threads);
+  json["pictures"] = stringsJson(info.pictures);
+  json["version"] = validUtf8(info.version);
+  json["seed"] = info.seed;
+  json["command_line"] = validUtf8(info.command_line);
+  json["preset"] = validUtf8(info.preset);
+  json["options"] = info.options;
+  return json;
+}
+
+void writeRegistrationJson(const io::OutputPath& path, const Cloud& fixed, const Cloud& moving,
+                           const pipeline::Registration& registration, const StageTimes& times,
+                           const RegistrationReportInfo& info) {
+  io::writeText(path, registrationJson(fixed, moving, registration, times, info).dump(2) + "\n");
+}
+
+std::size_t peakMemoryBytes() {
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+#ifdef __APPLE__
+  constexpr std::size_t kUnit = 1;
+#else
+  constexpr std::size_t kUnit = 1024;
+#endif
+  return static_cast<std::size_t>(usage.ru_maxrss) * kUnit;
+}
+
+}  // namespace agricolmap::report

@@ -1,0 +1,46 @@
+// registration.json: everything a program or a reader may want to know about a registration.
+// The schema is documented in docs/registration-json.md.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/io/output/output_path.hpp"
+#include "agricolmap/pipeline/registration.hpp"
+
+namespace agricolmap::report {
+
+/// What neither the clouds nor the registration know.
+struct RegistrationReportInfo {
+  std::string version;
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< as asked for; 0 is reported as the number in force
+  std::string command_line;
+  std::string preset;
+  /// Moving file coordinates → fixed file coordinates, as the registration started [m].
+  Eigen::Affine3d prior = Eigen::Affine3d::Identity();
+  std::string prior_source;           ///< in words, e.g. the files it came from
+  nlohmann::ordered_json options;     ///< all options in force
+  std::vector<std::string> pictures;  ///< names of the pictures beside the report
+};
+
+/// The report; numbers are doubles to the last digit, what is not finite is null. All strings are
+/// valid UTF-8.
+nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
+                                        const pipeline::Registration& registration, const StageTimes& times,
+                                        const RegistrationReportInfo& info);
+
+/// Writes it, indented. Throws OutputError.
+void writeRegistrationJson(const io::OutputPath& path, const Cloud& fixed, const Cloud& moving,
+                           const pipeline::Registration& registration, const StageTimes& times,
+                           const RegistrationReportInfo& info);
+
+/// Most memory that the process ever held [bytes]; 0 where the system does not tell.
+std::size_t peakMemoryBytes();
+
+}  // namespace agricolmap::report

@@ -1,0 +1,141 @@
+#include "agricolmap/report/json/registration_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/report/test_registration.hpp"
+
+namespace agricolmap::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+RegistrationReportInfo testInfo() {
+  RegistrationReportInfo info;
+  info.version = "1.2.3";
+  info.seed = std::numeric_limits<std::uint64_t>::max();
+  info.command_line = "agricolmap register uav.ply \xFF.ply";
+  info.preset = "default";
+  info.prior.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  info.prior_source = "offset.xyz of both clouds";
+  info.options = {{"grid", {{"cell", 0.02}}}};
+  info.threads = 2;
+  info.pictures = {"flow.png"};
+  return info;
+}
+
+Cloud testCloud(const std::string& name, bool coloured) {
+  Cloud cloud;
+  cloud.name = name;
+  cloud.origin = {432000.1, 5200000.2, 400.3};
+  cloud.xyz = {{0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 0.5F}};
+  if (coloured) cloud.rgb = {{1, 2, 3}, {4, 5, 6}};
+  cloud.dropped_points = 3;
+  return cloud;
+}
+
+Json reportOf(const pipeline::Registration& registration) {
+  StageTimes times;
+  times.add("level", 0.0123);
+  times.add("grid", 0.0456);
+  // As text and back, as every reader gets it.
+  return Json::parse(registrationJson(testCloud("uav.ply", false), testCloud("\xFF.ply", true),
+                                      registration, times, testInfo())
+                         .dump(2));
+}
+
+TEST(RegistrationJson, AcceptedHasEverything) {
+  const pipeline::Registration registration = testing::testRegistration();
+  const Json json = reportOf(registration);
+  EXPECT_EQ(json["status"], "accepted");
+  EXPECT_EQ(json["reasons"].size(), 2U);
+  for (const char* key :
+       {"yaw_deg", "tilt_x_deg", "tilt_y_deg", "scale_x", "scale_y", "scale_z", "shear"}) {
+    EXPECT_TRUE(json["transform"]["parts"][key].is_number()) << key;
+  }
+  EXPECT_NEAR(json["transform"]["parts"]["yaw_deg"], 0.06 * 57.29577951308232, 1e-9);
+  EXPECT_EQ(json["transform"]["parts"]["shift_m"], (Json{0.9, -0.6, 0.12}));
+  EXPECT_EQ(json["counts"]["inliers"], 200);
+  EXPECT_EQ(json["counts"]["matches"], 400);
+  EXPECT_EQ(json["counts"]["inlier_share"], 0.5);
+  EXPECT_EQ(json["evidence"]["blocks"].size(), 5U);
+  EXPECT_EQ(json["evidence"]["agreeing_blocks"], 4);
+  EXPECT_NEAR(json["residuals"]["match_rms_m"], 0.02 * std::sqrt(2.0), 0.005);
+  EXPECT_EQ(json["residuals"]["vertical"]["status"], "ok");
+  EXPECT_EQ(json["residuals"]["vertical"]["residual_m"], 0.013);
+  EXPECT_EQ(json["times"]["stages"]["level_s"], 0.0123);
+  EXPECT_EQ(json["fixed"]["points"], 2);
+  EXPECT_EQ(json["fixed"]["dropped_points"], 3);
+  EXPECT_EQ(json["fixed"]["has_colour"], false);
+  EXPECT_EQ(json["moving"]["has_colour"], true);
+  EXPECT_EQ(json["moving"]["box_max_m"][1], 5200002.2);
+  EXPECT_EQ(json["seed"].get<std::uint64_t>(), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(json["options"]["grid"]["cell"], 0.02);
+  EXPECT_GT(json["peak_memory_bytes"], 1 << 20);
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_DOUBLE_EQ(json["times"]["total_s"], 0.0579);
+  EXPECT_EQ(json["prior"]["matrix"][1][3], 0.2);
+  EXPECT_EQ(json["moving"]["path"], "\xEF\xBF\xBD.ply");
+}
+
+TEST(RegistrationJson, MatricesRoundTripToTheLastBit) {
+  const pipeline::Registration registration = testing::testRegistration();
+  const Json json = reportOf(registration);
+  for (int r = 0; r < 4; ++r) {
+    for (int c = 0; c < 4; ++c) {
+      EXPECT_EQ(json["transform"]["matrix"][r][c].get<double>(),
+                registration.fixed_from_moving.matrix()(r, c));
+      EXPECT_EQ(json["transform"]["local"]["matrix"][r][c].get<double>(),
+                registration.local_fixed_from_moving.matrix()(r, c));
+    }
+  }
+}
+
+TEST(RegistrationJson, RejectedWithoutAnswer) {
+  pipeline::Registration registration;
+  registration.verdict = verdict::rejectBecause("nothing coherent in common");
+  const Json json = reportOf(registration);
+  EXPECT_EQ(json["status"], "rejected");
+  EXPECT_EQ(json["reasons"], Json{"nothing coherent in common"});
+  EXPECT_TRUE(json["transform"].is_null());
+  EXPECT_TRUE(json["residuals"].is_null());
+  EXPECT_TRUE(json["evidence"]["blocks"].empty());
+}
+
+TEST(RegistrationJson, RejectedWithAnswerKeepsIt) {
+  pipeline::Registration registration = testing::testRegistration();
+  registration.verdict.status = verdict::Status::kRejected;
+  const Json json = reportOf(registration);
+  EXPECT_EQ(json["status"], "rejected");
+  EXPECT_EQ(json["transform"]["matrix"].size(), 4U);
+}
+
+TEST(RegistrationJson, WhatIsNotFiniteIsNull) {
+  pipeline::Registration registration = testing::testRegistration();
+  registration.correlation = std::numeric_limits<double>::quiet_NaN();
+  registration.evidence.uniqueness = std::numeric_limits<double>::infinity();
+  registration.evidence.blocks.clear();
+  registration.evidence.agreeing = 0;
+  const Json json = reportOf(registration);
+  EXPECT_TRUE(json["residuals"]["correlation"].is_null());
+  EXPECT_TRUE(json["residuals"]["signal"].is_null());
+  EXPECT_TRUE(json["residuals"]["block_rms_m"].is_null());
+  EXPECT_TRUE(json["evidence"]["uniqueness"].is_null());
+}
+
+TEST(RegistrationJson, FailuresToWriteAreOutputErrors) {
+  const pipeline::Registration registration = testing::testRegistration();
+  EXPECT_THROW(writeRegistrationJson("/nonexistent/registration.json", testCloud("a", true),
+                                     testCloud("b", true), registration, StageTimes(), testInfo()),
+               OutputError);
+}
+
+TEST(RegistrationJson, PeakMemoryIsPlausible) {
+  EXPECT_GT(peakMemoryBytes(), std::size_t{1} << 20);
+  EXPECT_LT(peakMemoryBytes(), std::size_t{1} << 40);
+}
+
+}  // namespace
+}  // namespace agricolmap::report

@@ -1,0 +1,52 @@
+#include "agricolmap/report/pictures/pictures.hpp"
+
+#include <array>
+#include <functional>
+
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/report/pictures/picture_kinds.hpp"
+#include "agricolmap/report/pictures/scene.hpp"
+
+namespace agricolmap::report {
+namespace {
+
+struct Kind {
+  const char* name;
+  bool needs_transform;
+  void (*write)(const io::OutputPath& path, const Scene& scene);
+};
+
+/// Those that take longest first, so that the last to finish is a quick one.
+constexpr std::array<Kind, 5> kKinds = {{
+    {"overlay_before.png", true,
+     [](const auto& p, const Scene& s) { writeOverlayPicture(p, s, false); }},
+    {"overlay_after.png", true,
+     [](const auto& p, const Scene& s) { writeOverlayPicture(p, s, true); }},
+    {"exg_maps.png", false, writeMapsPicture},
+    {"flow.png", false, writeFlowPicture},
+    {"blocks.png", true, writeBlocksPicture},
+}};
+
+}  // namespace
+
+std::vector<std::string> pictureNames() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) names.emplace_back(kind.name);
+  return names;
+}
+
+std::vector<std::string> writePictures(const io::OutputPath& dir, const pipeline::Registration& registration,
+                                       const PictureInfo& info) {
+  const Scene scene(registration, info);
+  std::vector<const Kind*> chosen;
+  for (const Kind& kind : kKinds) {
+    if (registration.has_transform || !kind.needs_transform) chosen.push_back(&kind);
+  }
+  parallelFor(chosen.size(),
+              [&](std::size_t i) { chosen[i]->write(dir / chosen[i]->name, scene); });
+  std::vector<std::string> names;
+  for (const Kind* kind : chosen) names.emplace_back(kind->name);
+  return names;
+}
+
+}  // namespace agricolmap::report

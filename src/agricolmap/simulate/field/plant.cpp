@@ -1,0 +1,374 @@
+#include "agricolmap/simulate/field/plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace agricolmap::simulate {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kGoldenAngle = 2.39996F;
+
+float normal(Random& random, double sigma) { return static_cast<float>(random.normal(sigma)); }
+float uniform(Random& random, double low, double high) {
+  return static_cast<float>(random.uniform(low, high));
+}
+
+/// Height of a usual plant's top, for wind and light [m].
+float usualHeight(Species species) {
+  switch (species) {
+    case Species::kSoybean:
+      return 0.20F;
+    case Species::kBeet:
+      return 0.13F;
+    case Species::kWheat:
+      return 0.25F;
+    case Species::kMaize:
+      return 0.85F;
+    case Species::kBroadWeed:
+      return 0.05F;
+    case Species::kGrassWeed:
+      return 0.10F;
+    case Species::kStraw:
+      return 1.0F;
+  }
+  return 1.0F;
+}
+
+int leafCount(Species species, Random& random) {
+  switch (species) {
+    case Species::kSoybean:
+      return 5 + static_cast<int>(random.below(4));
+    case Species::kBeet:
+      return 6 + static_cast<int>(random.below(6));
+    case Species::kWheat:
+      return 4 + static_cast<int>(random.below(3));
+    case Species::kMaize:
+      return 8 + static_cast<int>(random.below(3));
+    case Species::kBroadWeed:
+      return 4 + static_cast<int>(random.below(5));
+    case Species::kGrassWeed:
+      return 5 + static_cast<int>(random.below(6));
+    case Species::kStraw:
+      return 1;
+  }
+  return 0;
+}
+
+std::array<float, 3> usualAlbedo(Species species) {
+  switch (species) {
+    case Species::kSoybean:
+      return {0.062F, 0.150F, 0.040F};
+    case Species::kBeet:
+      return {0.090F, 0.190F, 0.050F};
+    case Species::kWheat:
+      return {0.075F, 0.140F, 0.050F};
+    case Species::kMaize:
+      return {0.080F, 0.165F, 0.048F};
+    case Species::kBroadWeed:
+      return {0.085F, 0.165F, 0.055F};
+    case Species::kGrassWeed:
+      return {0.095F, 0.185F, 0.060F};
+    case Species::kStraw:
+      return {0.420F, 0.360F, 0.260F};
+  }
+  return {};
+}
+
+Leaf soybeanLeaf(Random& r, float order, float around) {
+  Leaf leaf;
+  leaf.shape = LeafShape::kTrifoliate;
+  leaf.azimuth = around + normal(r, 0.5);
+  leaf.elevation = uniform(r, 0.35, 1.0);
+  leaf.bend = uniform(r, 0.3, 0.8);
+  leaf.length = (0.6F + 0.5F * order) * uniform(r, 0.080, 0.125);
+  leaf.stalk = 0.5F;
+  leaf.width = 0.62F * 0.5F * leaf.length;
+  leaf.base_z = 0.03F + 0.11F * order;
+  leaf.roll = normal(r, 0.3);
+  return leaf;
+}
+
+Leaf beetLeaf(Random& r, float order, float around) {
+  Leaf leaf;
+  leaf.azimuth = around + normal(r, 0.3);
+  // Young leaves stand in the middle, old ones lie around them.
+  leaf.elevation = 0.45F + 0.75F * order + normal(r, 0.15);
+  leaf.bend = uniform(r, 0.5, 1.1);
+  leaf.length = (1.0F - 0.45F * order) * uniform(r, 0.11, 0.17);
+  leaf.stalk = uniform(r, 0.30, 0.42);
+  leaf.width = 0.40F * leaf.length * uniform(r, 0.85, 1.15);
+  leaf.base_z = 0.01F;
+  leaf.roll = normal(r, 0.25);
+  return leaf;
+}
+
+Leaf wheatLeaf(Random& r, float order, float around) {
+  Leaf leaf;
+  leaf.shape = LeafShape::kBlade;
+  leaf.azimuth = around + normal(r, 1.0);
+  leaf.elevation = uniform(r, 1.1, 1.5);
+  leaf.bend = uniform(r, 0.2, 1.3);
+  leaf.length = uniform(r, 0.10, 0.18);
+  leaf.width = uniform(r, 0.008, 0.012);
+  leaf.base_z = 0.02F + 0.09F * order;
+  leaf.roll = normal(r, 0.4);
+  return leaf;
+}
+
+Leaf maizeLeaf(Random& r, float order, float around, int index) {
+  Leaf leaf;
+  leaf.shape = LeafShape::kBlade;
+  // Leaves stand in two ranks.
+  leaf.azimuth = around + kPi * static_cast<float>(index % 2) + normal(r, 0.22);
+  leaf.elevation = uniform(r, 0.8, 1.2) + 0.2F * order;
+  leaf.bend = uniform(r, 1.2, 2.1) * (1.1F - 0.4F * order);
+  leaf.length = uniform(r, 0.42, 0.58) * (0.55F + 1.6F * order * (1.15F - order));
+  leaf.width = uniform(r, 0.050, 0.068) * (0.7F + 0.3F * order);
+  leaf.base_z = 0.05F + 0.50F * order;
+  leaf.roll = normal(r, 0.2);
+  return leaf;
+}
+
+Leaf weedLeaf(Random& r, Species species, float around) {
+  Leaf leaf;
+  leaf.azimuth = around + normal(r, 0.5);
+  if (species == Species::kBroadWeed) {
+    leaf.elevation = uniform(r, 0.1, 0.7);
+    leaf.bend = uniform(r, 0.1, 0.6);
+    leaf.length = uniform(r, 0.03, 0.08);
+    leaf.stalk = 0.25F;
+    leaf.width = uniform(r, 0.3, 0.6) * leaf.length;
+    leaf.base_z = uniform(r, 0.005, 0.02);
+  } else {
+    leaf.shape = LeafShape::kBlade;
+    leaf.elevation = uniform(r, 0.5, 1.4);
+    leaf.bend = uniform(r, 0.5, 1.6);
+    leaf.length = uniform(r, 0.07, 0.14);
+    leaf.width = uniform(r, 0.005, 0.008);
+    leaf.base_z = 0.005F;
+  }
+  return leaf;
+}
+
+Leaf strawPiece(Random& r) {
+  Leaf leaf;
+  leaf.shape = LeafShape::kStraw;
+  leaf.azimuth = uniform(r, 0.0, 2.0 * std::numbers::pi);
+  leaf.elevation = normal(r, 0.06);
+  leaf.length = uniform(r, 0.04, 0.16);
+  leaf.width = uniform(r, 0.004, 0.010);
+  leaf.base_z = uniform(r, 0.003, 0.012);
+  return leaf;
+}
+
+Leaf drawLeaf(Species species, Random& random, int index, int count, float phase) {
+  const float order = static_cast<float>(index + 1) / static_cast<float>(count);
+  const float around = phase + kGoldenAngle * static_cast<float>(index);
+  switch (species) {
+    case Species::kSoybean:
+      return soybeanLeaf(random, order, around);
+    case Species::kBeet:
+      return beetLeaf(random, order, around);
+    case Species::kWheat:
+      return wheatLeaf(random, order, around);
+    case Species::kMaize:
+      return maizeLeaf(random, order, phase, index);
+    case Species::kBroadWeed:
+    case Species::kGrassWeed:
+      return weedLeaf(random, species, around);
+    case Species::kStraw:
+      return strawPiece(random);
+  }
+  return {};
+}
+
+}  // namespace
+
+Foliage growFoliage(const Plant& plant, const VisitPlants& visit) {
+  Random shared(plant.id);
+  Random visitor(hashBits(visit.seed, plant.id));
+  Foliage foliage;
+  foliage.count = leafCount(plant.species, shared);
+  const float phase = uniform(shared, 0.0, 2.0 * std::numbers::pi);
+  const bool grows = plant.species != Species::kStraw;
+  const float size = plant.size * (grows ? static_cast<float>(visit.growth) : 1.0F);
+  const float height = usualHeight(plant.species) * size;
+  const Eigen::Vector2f sway(normal(visitor, visit.wind), normal(visitor, visit.wind));
+  for (int i = 0; i < foliage.count; ++i) {
+    const std::uint64_t leaf_seed = shared.bits();
+    const bool redrawn = grows && shared.chance(visit.leaf_unshared);
+    Random own = redrawn ? Random::stream(visit.seed, leaf_seed) : Random(leaf_seed);
+    // A leaf drawn anew may point anywhere: it stands for another one that this view sees.
+    const float turned = redrawn && plant.species != Species::kMaize
+                             ? uniform(own, 0.0, 2.0 * std::numbers::pi)
+                             : phase;
+    Leaf leaf = drawLeaf(plant.species, own, i, foliage.count, turned);
+    const float age = normal(own, 0.10);
+    leaf.length *= size;
+    leaf.width *= size;
+    leaf.base_z *= size;
+    const float top = leaf.base_z + 0.6F * leaf.length * std::sin(std::max(0.1F, leaf.elevation));
+    // Leaves deep in the stand get less light and are darker themselves.
+    leaf.shade = std::clamp(0.62F + 0.38F * std::min(1.3F, top / height) + age, 0.4F, 1.3F);
+    const float flutter = 0.4F * static_cast<float>(visit.wind);
+    leaf.shift = std::min(1.0F, top / height) *
+                 (sway + flutter * Eigen::Vector2f(normal(visitor, 1.0), normal(visitor, 1.0)));
+    foliage.leaves[static_cast<std::size_t>(i)] = leaf;
+  }
+  foliage.albedo = usualAlbedo(plant.species);
+  const float tone = std::clamp(plant.tone, -1.5F, 1.5F);
+  // Positive tones are lighter and yellower.
+  foliage.albedo[0] *= std::exp(0.22F * tone);
+  foliage.albedo[1] *= std::exp(0.13F * tone);
+  foliage.albedo[2] *= std::exp(0.05F * tone);
+  return foliage;
+}
+
+/// One surface to draw, in window coordinates [m].
+struct LeafPainter::Ribbon {
+  Eigen::Vector3f base;
+  float azimuth = 0.0F;
+  float elevation = 0.0F;
+  float bend = 0.0F;
+  float length = 0.0F;
+  float half_width = 0.0F;
+  float roll = 0.0F;
+  LeafShape shape = LeafShape::kOval;
+  std::array<float, 3> albedo{};
+};
+
+LeafPainter::LeafPainter(Canvas& canvas, const Tile& tile, const Eigen::Vector3f& sun_in_window)
+    : canvas_(&canvas),
+      tile_(tile),
+      sun_(sun_in_window),
+      heading_(static_cast<float>(canvas.window.heading)),
+      cell_(static_cast<float>(canvas.window.cell)) {}
+
+namespace {
+
+/// Half width at t in [0, 1] over the greatest.
+float profile(LeafShape shape, float t) {
+  switch (shape) {
+    case LeafShape::kOval:
+    case LeafShape::kTrifoliate: {
+      const float s = 2.0F * t - 0.9F;
+      return std::sqrt(std::max(0.0F, 1.0F - s * s * (s > 0.0F ? 0.83F : 1.0F)));
+    }
+    case LeafShape::kBlade:
+      return std::min(1.0F, 0.35F + 4.0F * t) * std::sqrt(std::max(0.0F, 1.0F - t));
+    case LeafShape::kStraw:
+      return 1.0F;
+  }
+  return 0.0F;
+}
+
+/// End of a rod of the given length that bends down on its way.
+Eigen::Vector3f alongRod(const Eigen::Vector3f& base, float azimuth, float elevation,
+                         float length) {
+  return base + length * Eigen::Vector3f(std::cos(elevation) * std::cos(azimuth),
+                                         std::cos(elevation) * std::sin(azimuth),
+                                         std::sin(elevation));
+}
+
+}  // namespace
+
+void LeafPainter::paintRibbon(const Ribbon& ribbon) {
+  const float step = 0.75F * cell_;
+  const int steps = std::max(1, static_cast<int>(std::ceil(ribbon.length / step)));
+  const float ds = ribbon.length / static_cast<float>(steps);
+  const float ca = std::cos(ribbon.azimuth);
+  const float sa = std::sin(ribbon.azimuth);
+  const float cr = std::cos(ribbon.roll);
+  const float sr = std::sin(ribbon.roll);
+  const std::array<std::uint8_t, 3> albedo = {encodeAlbedo(ribbon.albedo[0]),
+                                              encodeAlbedo(ribbon.albedo[1]),
+                                              encodeAlbedo(ribbon.albedo[2])};
+  // The direction of the axis turns by a constant angle per step.
+  float ce = std::cos(ribbon.elevation);
+  float se = std::sin(ribbon.elevation);
+  const float turn_c = std::cos(ribbon.bend / static_cast<float>(steps));
+  const float turn_s = std::sin(ribbon.bend / static_cast<float>(steps));
+  Eigen::Vector3f p = ribbon.base;
+  const float to_cell = 1.0F / cell_;
+  for (int i = 0; i < steps; ++i) {
+    const float t = (static_cast<float>(i) + 0.5F) / static_cast<float>(steps);
+    p += ds * Eigen::Vector3f(ce * ca, ce * sa, se);
+    // Across the leaf, rolled about its axis; the normal completes the pair.
+    const Eigen::Vector3f across(-sa * cr - se * ca * sr, ca * cr - se * sa * sr, ce * sr);
+    const Eigen::Vector3f facing(sa * sr - se * ca * cr, -ca * sr - se * sa * cr, ce * cr);
+    const float cosine = std::abs(facing.dot(sun_));
+    const auto light =
+        static_cast<std::uint8_t>(1.0F + 254.0F * std::min(1.0F, 0.15F + 0.85F * cosine));
+    const float half = ribbon.half_width * profile(ribbon.shape, t);
+    const int side = static_cast<int>(std::ceil(half / step - 0.3F));
+    const float dw = side > 0 ? half / static_cast<float>(side) : 0.0F;
+    for (int k = -side; k <= side; ++k) {
+      const Eigen::Vector3f q = p + (static_cast<float>(k) * dw) * across;
+      const int col = static_cast<int>(std::floor(q.x() * to_cell));
+      const int row = static_cast<int>(std::floor(q.y() * to_cell));
+      if (col < tile_.col0 || col >= tile_.col1 || row < tile_.row0 || row >= tile_.row1) continue;
+      Cell& cell = canvas_->cells(row, col);
+      if (q.z() <= cell.z) continue;
+      cell.z = q.z();
+      cell.albedo = albedo;
+      cell.light = light;
+    }
+    const float next_c = ce * turn_c + se * turn_s;
+    se = se * turn_c - ce * turn_s;
+    ce = next_c;
+  }
+}
+
+void LeafPainter::paintLeaf(const Leaf& leaf, const Eigen::Vector3f& base,
+                            const std::array<float, 3>& albedo) {
+  Ribbon ribbon;
+  ribbon.base = base;
+  ribbon.azimuth = leaf.azimuth - heading_;
+  ribbon.elevation = leaf.elevation;
+  ribbon.bend = leaf.bend;
+  ribbon.roll = leaf.roll;
+  ribbon.shape = leaf.shape;
+  ribbon.albedo = albedo;
+  const float stalk = leaf.stalk * leaf.length;
+  if (stalk > 0.0F) {
+    Ribbon stem = ribbon;
+    stem.shape = LeafShape::kStraw;
+    stem.length = stalk;
+    stem.bend = 0.0F;
+    stem.half_width = 0.04F * leaf.width;
+    for (float& a : stem.albedo) a *= 1.25F;
+    paintRibbon(stem);
+    ribbon.base = alongRod(base, ribbon.azimuth, leaf.elevation, stalk);
+  }
+  ribbon.length = leaf.length - stalk;
+  ribbon.half_width = 0.5F * leaf.width;
+  if (leaf.shape != LeafShape::kTrifoliate) {
+    paintRibbon(ribbon);
+    return;
+  }
+  // Three leaflets that lie flatter than the stalk.
+  ribbon.elevation = 0.3F * (leaf.elevation - 0.5F);
+  for (const float turn : {0.0F, 1.35F, -1.35F}) {
+    Ribbon leaflet = ribbon;
+    leaflet.azimuth += turn;
+    leaflet.roll = turn == 0.0F ? leaf.roll : leaf.roll + 0.2F * turn;
+    paintRibbon(leaflet);
+  }
+}
+
+void LeafPainter::paint(const Plant& plant, const Foliage& foliage, float soil) {
+  const Eigen::Vector2f place = canvas_->window.local(plant.position.cast<double>()).cast<float>();
+  const Eigen::Matrix2f turn = Eigen::Rotation2Df(-heading_).toRotationMatrix();
+  for (int i = 0; i < foliage.count; ++i) {
+    const Leaf& leaf = foliage.leaves[static_cast<std::size_t>(i)];
+    const Eigen::Vector2f moved = place + turn * leaf.shift;
+    std::array<float, 3> albedo = foliage.albedo;
+    for (float& a : albedo) a *= leaf.shade;
+    paintLeaf(leaf, {moved.x(), moved.y(), soil + leaf.base_z}, albedo);
+  }
+}
+
+}  // namespace agricolmap::simulate

@@ -1,0 +1,71 @@
+// Plants made of leaves: drawn from random numbers, per view, and rasterised from above.
+#pragma once
+
+#include <array>
+
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/simulate/field/field_model.hpp"
+
+namespace agricolmap::simulate {
+
+/// What one visit changes about plants.
+struct VisitPlants {
+  std::uint64_t seed = 0;      ///< of what this visit draws for itself
+  double leaf_unshared = 0.0;  ///< fraction of leaves drawn from it
+  double growth = 1.0;         ///< factor on sizes
+  double wind = 0.0;           ///< deviation of a plant's top per axis [m]
+};
+
+enum class LeafShape : std::uint8_t { kOval, kBlade, kTrifoliate, kStraw };
+
+/// A leaf as a bent ribbon: it leaves its base at `elevation` and bends down by `bend` in all.
+struct Leaf {
+  LeafShape shape = LeafShape::kOval;
+  float azimuth = 0.0F;                             ///< field frame [rad]
+  float elevation = 0.0F;                           ///< above the horizon at the base [rad]
+  float bend = 0.0F;                                ///< loss of elevation from base to tip [rad]
+  float length = 0.0F;                              ///< with stalk [m]
+  float width = 0.0F;                               ///< greatest [m]
+  float stalk = 0.0F;                               ///< fraction of the length that is stalk
+  float roll = 0.0F;                                ///< about its axis [rad]
+  float base_z = 0.0F;                              ///< above the soil [m]
+  Eigen::Vector2f shift = Eigen::Vector2f::Zero();  ///< wind at the leaf's height [m]
+  float shade = 1.0F;  ///< reflectance of this leaf against the plant's
+};
+
+/// Up to kMaxLeaves leaves.
+struct Foliage {
+  static constexpr int kMaxLeaves = 16;
+  std::array<Leaf, kMaxLeaves> leaves;
+  int count = 0;
+  std::array<float, 3> albedo{};
+};
+
+Foliage growFoliage(const Plant& plant, const VisitPlants& visit);
+
+/// Draws leaves into a rectangle of the canvas's cells, keeping the higher surface in each.
+class LeafPainter {
+ public:
+  struct Tile {
+    int row0 = 0;
+    int row1 = 0;
+    int col0 = 0;
+    int col1 = 0;
+  };
+  LeafPainter(Canvas& canvas, const Tile& tile, const Eigen::Vector3f& sun_in_window);
+  /// `soil` is the soil's height at the plant [m].
+  void paint(const Plant& plant, const Foliage& foliage, float soil);
+
+ private:
+  struct Ribbon;
+  void paintRibbon(const Ribbon& ribbon);
+  void paintLeaf(const Leaf& leaf, const Eigen::Vector3f& base, const std::array<float, 3>& albedo);
+
+  Canvas* canvas_;
+  Tile tile_;
+  Eigen::Vector3f sun_;
+  float heading_;
+  float cell_;
+};
+
+}  // namespace agricolmap::simulate

@@ -1,0 +1,250 @@
+#include "agricolmap/simulate/field/render.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/simulate/field/light.hpp"
+#include "agricolmap/simulate/field/plant.hpp"
+
+namespace agricolmap::simulate {
+
+namespace {
+
+constexpr int kTileCells = 512;
+using Tile = LeafPainter::Tile;
+
+constexpr std::uint64_t kClods = 41;
+constexpr std::uint64_t kTools = 51;
+constexpr std::uint64_t kMoisture = 61;
+constexpr std::uint64_t kFine = 71;
+
+/// The noise fields of a tile's soil. Coarse ones are the field's; fine ones are mixed from the
+/// field's and the visit's so that `unshared` of their variance is the visit's own.
+class SoilPainter {
+ public:
+  SoilPainter(const FieldModel& field, const Visit& visit, const Window& window, const Tile& tile)
+      : clod_height_(static_cast<float>(field.options().clods)),
+        shared_(static_cast<float>(std::sqrt(1.0 - visit.leaf_unshared))),
+        own_(static_cast<float>(std::sqrt(visit.leaf_unshared))),
+        box_(boundsOf(window, tile, [](const Eigen::Vector2d& p) { return p; })),
+        row_box_(boundsOf(window, tile,
+                          [&](const Eigen::Vector2d& p) { return field.rowCoordinates(p); })),
+        tools_(hashBits(field.seed() + kTools, 1), row_box_.low.x() / kStripeLength,
+               row_box_.high.x() / kStripeLength, row_box_.low.y() / kStripeWidth,
+               row_box_.high.y() / kStripeWidth),
+        coarse_clods_(make(field.seed() + kClods, 0.11)),
+        clods_(make(field.seed() + kClods + 1, 0.045)),
+        own_clods_(make(visit.seed + kClods + 1, 0.045)),
+        crumbs_(make(field.seed() + kClods + 2, 0.018)),
+        own_crumbs_(make(visit.seed + kClods + 2, 0.018)),
+        moisture_(make(field.seed() + kMoisture, 1.7)),
+        patches_(make(field.seed() + kMoisture + 1, 0.35)),
+        fine_(make(field.seed() + kFine, 0.025)),
+        own_fine_(make(visit.seed + kFine, 0.025)),
+        tint_(make(field.seed() + kFine + 1, 0.07)),
+        own_tint_(make(visit.seed + kFine + 1, 0.07)) {}
+
+  /// `uv` are the point's coordinates along and across the rows, `smooth` is the soil's height
+  /// without clods, `track` 1 in wheel tracks.
+  void paint(const Eigen::Vector2d& point, const Eigen::Vector2d& uv, float smooth, float track,
+             Cell& cell, float& ground) const {
+    // Wheels flatten the clods, harrows leave stripes.
+    const float rough = clod_height_ * (1.0F - 0.6F * track);
+    const float stripes =
+        tools_((1.0 / kStripeLength) * uv.x(), (1.0 / kStripeWidth) * uv.y()) * (1.0F - track);
+    const float coarse = at(coarse_clods_, point, 0.11);
+    const float clods = mix(clods_, own_clods_, point, 0.045);
+    const float crumbs = mix(crumbs_, own_crumbs_, point, 0.018);
+    const float bumps = 0.6F * coarse + 0.5F * stripes + 0.5F * clods + 0.25F * crumbs;
+    ground = smooth + rough * bumps;
+    cell.z = ground;
+    cell.light = kBare;
+    // Dry tops are lighter than the moist soil between.
+    const float brightness = 0.14F * at(moisture_, point, 1.7) + 0.08F * at(patches_, point, 0.35) +
+                             0.07F * bumps + 0.10F * mix(fine_, own_fine_, point, 0.025) -
+                             0.12F * track;
+    const float tint = 0.03F * mix(tint_, own_tint_, point, 0.07);
+    const float albedo = std::max(0.3F, 1.0F + brightness);
+    cell.albedo = {encodeAlbedo(0.235F * albedo * (1.0F + tint)), encodeAlbedo(0.185F * albedo),
+                   encodeAlbedo(0.140F * albedo * (1.0F - tint))};
+  }
+
+ private:
+  struct Bounds {
+    Eigen::Vector2d low;
+    Eigen::Vector2d high;
+  };
+  template <typename Map>
+  static Bounds boundsOf(const Window& window, const Tile& tile, const Map& map) {
+    Bounds box{Eigen::Vector2d::Constant(1e30), Eigen::Vector2d::Constant(-1e30)};
+    for (const int c : {tile.col0, tile.col1}) {
+      for (const int r : {tile.row0, tile.row1}) {
+        const Eigen::Vector2d corner = map(window.field(window.cell * Eigen::Vector2d(c, r)));
+        box.low = box.low.cwiseMin(corner);
+        box.high = box.high.cwiseMax(corner);
+      }
+    }
+    return box;
+  }
+  NoiseTile make(std::uint64_t seed, double feature) const {
+    return {hashBits(seed, 1), box_.low.x() / feature, box_.high.x() / feature,
+            box_.low.y() / feature, box_.high.y() / feature};
+  }
+  static float at(const NoiseTile& noise, const Eigen::Vector2d& point, double feature) {
+    const double scale = 1.0 / feature;  // folded: `feature` is a constant at every call
+    return noise(scale * point.x(), scale * point.y());
+  }
+  float mix(const NoiseTile& shared, const NoiseTile& own, const Eigen::Vector2d& point,
+            double feature) const {
+    float value = 0.0F;
+    if (shared_ > 0.0F) value += shared_ * at(shared, point, feature);
+    if (own_ > 0.0F) value += own_ * at(own, point, feature);
+    return value;
+  }
+
+  static constexpr double kStripeLength = 1.5;  // of the harrow's marks [m]
+  static constexpr double kStripeWidth = 0.07;
+  float clod_height_;
+  float shared_;
+  float own_;
+  Bounds box_;
+  Bounds row_box_;
+  NoiseTile tools_;
+  NoiseTile coarse_clods_;
+  NoiseTile clods_;
+  NoiseTile own_clods_;
+  NoiseTile crumbs_;
+  NoiseTile own_crumbs_;
+  NoiseTile moisture_;
+  NoiseTile patches_;
+  NoiseTile fine_;
+  NoiseTile own_fine_;
+  NoiseTile tint_;
+  NoiseTile own_tint_;
+};
+
+/// What varies slowly, on every fourth cell: ridges and tracks are wider.
+struct SmoothSoil {
+  static constexpr int kStep = 4;
+  Raster<float> height;
+  Raster<float> track;
+};
+
+SmoothSoil smoothSoil(const FieldModel& field, const Window& window) {
+  constexpr int kStep = SmoothSoil::kStep;
+  SmoothSoil soil;
+  soil.height = Raster<float>(window.rows / kStep + 2, window.cols / kStep + 2);
+  soil.track = soil.height;
+  parallelFor(
+      static_cast<std::size_t>(soil.height.rows()),
+      [&](std::size_t item) {
+        const int r = static_cast<int>(item);
+        for (int c = 0; c < soil.height.cols(); ++c) {
+          const Eigen::Vector2d point =
+              window.field(window.cell * Eigen::Vector2d(kStep * c + 0.5, kStep * r + 0.5));
+          soil.height(r, c) = static_cast<float>(field.soilHeight(point));
+          soil.track(r, c) = field.wheelTrack(field.rowCoordinates(point).y());
+        }
+      },
+      16);
+  return soil;
+}
+
+void paintSoil(const FieldModel& field, const Visit& visit, const SmoothSoil& smooth,
+               const Tile& tile, Canvas& canvas) {
+  const Window& window = canvas.window;
+  const SoilPainter painter(field, visit, window, tile);
+  constexpr float kToSmooth = 1.0F / SmoothSoil::kStep;
+  for (int r = tile.row0; r < tile.row1; ++r) {
+    // Both frames are linear in the column.
+    Eigen::Vector2d point = window.field(window.cell * Eigen::Vector2d(tile.col0 + 0.5, r + 0.5));
+    const Eigen::Vector2d next =
+        window.field(window.cell * Eigen::Vector2d(tile.col0 + 1.5, r + 0.5));
+    Eigen::Vector2d uv = field.rowCoordinates(point);
+    const Eigen::Vector2d point_step = next - point;
+    const Eigen::Vector2d uv_step = field.rowCoordinates(next) - uv;
+    Cell* cells = canvas.cells.row(r);
+    float* ground = canvas.ground.row(r);
+    const float smooth_row = kToSmooth * static_cast<float>(r);
+    for (int c = tile.col0; c < tile.col1; ++c, point += point_step, uv += uv_step) {
+      const float smooth_col = kToSmooth * static_cast<float>(c);
+      painter.paint(point, uv, sampleRaster(smooth.height, smooth_col, smooth_row),
+                    sampleRaster(smooth.track, smooth_col, smooth_row), cells[c], ground[c]);
+    }
+  }
+}
+
+std::vector<Tile> tilesOf(const Window& window) {
+  std::vector<Tile> tiles;
+  for (int r = 0; r < window.rows; r += kTileCells) {
+    for (int c = 0; c < window.cols; c += kTileCells) {
+      tiles.push_back(
+          {r, std::min(window.rows, r + kTileCells), c, std::min(window.cols, c + kTileCells)});
+    }
+  }
+  return tiles;
+}
+
+/// Indices of the plants that may reach into each tile, in order.
+std::vector<std::vector<std::uint32_t>> plantsPerTile(const std::vector<Plant>& plants,
+                                                      const std::vector<Tile>& tiles,
+                                                      const Window& window, double growth) {
+  std::vector<std::vector<std::uint32_t>> lists(tiles.size());
+  for (std::size_t i = 0; i < plants.size(); ++i) {
+    const Plant& plant = plants[i];
+    const Eigen::Vector2d at = window.local(plant.position.cast<double>()) / window.cell;
+    const double reach = 0.03 / window.cell + reachOf(plant.species) *
+                                                  static_cast<double>(plant.size) *
+                                                  std::max(1.0, growth) / window.cell;
+    for (std::size_t k = 0; k < tiles.size(); ++k) {
+      const Tile& tile = tiles[k];
+      if (at.x() + reach >= tile.col0 && at.x() - reach <= tile.col1 &&
+          at.y() + reach >= tile.row0 && at.y() - reach <= tile.row1) {
+        lists[k].push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+  }
+  return lists;
+}
+
+bool pulled(const Plant& plant, const Visit& visit) {
+  if (plant.species != Species::kBroadWeed && plant.species != Species::kGrassWeed) return false;
+  return hashUniform(plant.id, 1, 2) < static_cast<float>(visit.weeds_pulled);
+}
+
+}  // namespace
+
+Canvas renderVisit(const FieldModel& field, const Visit& visit, const Window& window) {
+  Canvas canvas;
+  canvas.window = window;
+  canvas.cells = Raster<Cell>(window.rows, window.cols);
+  canvas.ground = Raster<float>(window.rows, window.cols);
+  std::vector<Plant> plants = field.plantsIn(window, visit.growth);
+  std::erase_if(plants, [&](const Plant& plant) { return pulled(plant, visit); });
+  const SmoothSoil smooth = smoothSoil(field, window);
+  const std::vector<Tile> tiles = tilesOf(window);
+  const std::vector<std::vector<std::uint32_t>> lists =
+      plantsPerTile(plants, tiles, window, visit.growth);
+  const Eigen::Vector3d sun = sunDirection(visit.solar_hour);
+  const Eigen::Vector2d flat = Eigen::Rotation2Dd(-window.heading) * sun.head<2>();
+  const Eigen::Vector3f sun_in_window(static_cast<float>(flat.x()), static_cast<float>(flat.y()),
+                                      static_cast<float>(sun.z()));
+  const VisitPlants change{visit.seed, visit.leaf_unshared, visit.growth, visit.wind};
+  parallelFor(tiles.size(), [&](std::size_t k) {
+    paintSoil(field, visit, smooth, tiles[k], canvas);
+    LeafPainter painter(canvas, tiles[k], sun_in_window);
+    for (const std::uint32_t i : lists[k]) {
+      const Plant& plant = plants[i];
+      const auto soil = static_cast<float>(field.soilHeight(plant.position.cast<double>()));
+      painter.paint(plant, growFoliage(plant, change), soil);
+    }
+  });
+  canvas.leaf_depth = leafDepthOf(field.species());
+  lightCanvas(canvas, sun, visit.overcast);
+  return canvas;
+}
+
+}  // namespace agricolmap::simulate

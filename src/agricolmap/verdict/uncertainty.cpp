@@ -1,0 +1,121 @@
+#include "agricolmap/verdict/uncertainty.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "agricolmap/verdict/block_shifts.hpp"
+
+namespace agricolmap::verdict {
+
+void describe(OptionTable& table, UncertaintyOptions& options) {
+  table.number("inflation", options.inflation, 0.0, 1000.0, "",
+               "factor on the deviations that the blocks' disagreement gives");
+  table.number("floor", options.floor, 0.0, 10.0, "m",
+               "displacement that is left when no block disagrees, because all err alike");
+  table.number("height_inflation", options.height_inflation, 0.0, 1000.0, "",
+               "factor on the deviation of the ground's heights");
+  table.number("height_floor", options.height_floor, 0.0, 10.0, "m",
+               "deviation of the height that is left without any");
+}
+
+namespace {
+
+constexpr std::size_t kLeastBlocks = 4;
+constexpr int kParameters = 5;
+constexpr double kLeastRadius = 0.5;  // [m]
+
+using Parameters = Eigen::Matrix<double, kParameters, 1>;
+using Square = Eigen::Matrix<double, kParameters, kParameters>;
+
+}  // namespace
+
+Eigen::Matrix<double, 2, 5> PoseUncertainty::jacobian(const Eigen::Vector2d& fixed) const {
+  const Eigen::Vector2d q = fixed - centre;
+  Eigen::Matrix<double, 2, 5> j;
+  j.leftCols<2>().setIdentity();
+  j.col(2) = Eigen::Vector2d(-q.y(), q.x());
+  j.col(3) = axes.col(0) * axes.col(0).dot(q);
+  j.col(4) = axes.col(1) * axes.col(1).dot(q);
+  return j;
+}
+
+namespace {
+
+/// Expected RMS error of the blocks of the whole `strip` [m]. What lies beyond the fixed map hangs
+/// on the `compared` blocks like a lever, and the drift that bent these goes on there.
+double expectedOver(const std::vector<BlockShift>& strip, const std::vector<BlockShift>& compared,
+                    const PoseUncertainty& pose) {
+  double radius2 = 0.0;
+  for (const BlockShift& block : compared) radius2 += (block.place - pose.centre).squaredNorm();
+  radius2 = std::max(radius2 / static_cast<double>(compared.size()), kLeastRadius * kLeastRadius);
+  double sum = 0.0;
+  for (const BlockShift& block : strip) {
+    double beyond2 = std::numeric_limits<double>::infinity();
+    for (const BlockShift& other : compared) {
+      beyond2 = std::min(beyond2, (block.place - other.place).squaredNorm());
+    }
+    sum += pose.at(block.place).trace() + pose.local_rms * pose.local_rms * beyond2 / radius2;
+  }
+  return std::sqrt(sum / static_cast<double>(strip.size()));
+}
+
+}  // namespace
+
+std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed, const map::SignalMap& moving,
+                                                   const Eigen::Affine2d& pose,
+                                                   const Evidence& evidence,
+                                                   const locate::SearchSpace& space, double height_residual,
+                                                   const UncertaintyOptions& options) {
+  checkOptions(options);
+  if (evidence.block_side <= 0.0) return std::nullopt;
+  const std::vector<BlockShift> strip = shiftBlocks(fixed, moving, pose, evidence.block_side);
+  std::vector<BlockShift> blocks;
+  std::copy_if(strip.begin(), strip.end(), std::back_inserter(blocks),
+               [](const BlockShift& block) { return block.usable; });
+  if (blocks.size() < kLeastBlocks) return std::nullopt;
+  PoseUncertainty result;
+  for (const BlockShift& block : blocks) result.centre += block.place;
+  result.centre /= static_cast<double>(blocks.size());
+  for (int i = 0; i < 2; ++i) {
+    result.axes.col(i) = (pose.linear() * space.scale_axes.col(i)).normalized();
+  }
+  // The affine that the blocks would rather have, and what it leaves of their shifts. Every block
+  // counts alike: drift and wind, not the texture's noise, are what they differ by.
+  Square normal = Square::Zero();
+  Parameters right = Parameters::Zero();
+  for (const BlockShift& block : blocks) {
+    const auto j = result.jacobian(block.place);
+    normal += j.transpose() * j;
+    right += j.transpose() * block.shift;
+  }
+  normal.diagonal().array() += 1e-9;
+  const Eigen::LDLT<Square> solver(normal);
+  const Parameters fit = solver.solve(right);
+  double residual2 = 0.0;
+  for (const BlockShift& block : blocks) {
+    residual2 += (block.shift - result.jacobian(block.place) * fit).squaredNorm();
+  }
+  const double freedom = std::max(1.0, 2.0 * static_cast<double>(blocks.size()) - kParameters);
+  const double variance = residual2 / freedom;
+  result.local_rms = std::sqrt(2.0 * variance);
+  // `fit` is what the pose still misses of the blocks' own best affine: counted as well.
+  double offset2 = 0.0;
+  for (const BlockShift& block : blocks) {
+    offset2 += (result.jacobian(block.place) * fit).squaredNorm();
+  }
+  offset2 /= static_cast<double>(2 * blocks.size());
+  const auto count = static_cast<double>(blocks.size());
+  const double scale =
+      options.inflation * options.inflation * (variance + offset2 * count / kParameters) +
+      options.floor * options.floor * count;
+  result.covariance = scale * solver.solve(Square::Identity());
+  result.expected_rms = expectedOver(strip, blocks, result);
+  result.height_deviation =
+      std::hypot(options.height_floor, options.height_inflation * height_residual);
+  return result;
+}
+
+}  // namespace agricolmap::verdict

@@ -1,0 +1,57 @@
+// How accurate a registration is, if it is right: the covariance of its horizontal parameters from
+// how much the blocks of the strip disagree with it and with one another.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/locate/association.hpp"
+#include "agricolmap/verdict/evidence.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap::verdict {
+
+/// All from calibration.
+struct UncertaintyOptions {
+  double inflation = 1.0;  ///< factor on deviations that the blocks' disagreement gives
+  /// Displacement that is left when the blocks agree to a hair, because all are wrong alike: a
+  /// camera low above the ground and one high above see a leaf in different places [m].
+  double floor = 0.003;
+  double height_inflation = 1.2;  ///< factor on the deviation of the ground's heights
+  double height_floor = 0.01;     ///< deviation of the height that is left without any [m]
+};
+void describe(OptionTable& table, UncertaintyOptions& options);
+
+/// Errors of a pose move a point at q (fixed levelled frame, from `centre`) by
+///   (δx, δy) + δψ·(−q_y, q_x) + δa·u(u·q) + δb·v(v·q)
+/// with u, v the directions of the moving file's axes in the fixed frame.
+struct PoseUncertainty {
+  /// Of (δx, δy [m], heading δψ [rad], relative scales δa, δb).
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();    ///< fixed levelled frame [m]
+  Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  ///< columns: u, v
+  double height_deviation = 0.0;                       ///< of the height, apart from the rest [m]
+  /// Expected horizontal RMS error over the strip, that beyond the fixed map included [m].
+  double expected_rms = 0.0;
+  double local_rms = 0.0;  ///< what the blocks differ by after the best affine: drift, wind [m]
+
+  /// Derivative of a point's displacement to the five parameters.
+  Eigen::Matrix<double, 2, 5> jacobian(const Eigen::Vector2d& fixed) const;
+  /// Covariance of a point's horizontal position [m²].
+  Eigen::Matrix2d at(const Eigen::Vector2d& fixed) const {
+    const Eigen::Matrix<double, 2, 5> j = jacobian(fixed);
+    return j * covariance * j.transpose();
+  }
+};
+
+/// Nothing when too few blocks can be compared. `fixed`, `moving`: of the same cell size, fine
+/// enough for centimetres. `height_residual`: robust deviation of the ground's heights [m].
+std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed, const map::SignalMap& moving,
+                                                   const Eigen::Affine2d& pose,
+                                                   const Evidence& evidence,
+                                                   const locate::SearchSpace& space, double height_residual,
+                                                   const UncertaintyOptions& options);
+
+}  // namespace agricolmap::verdict

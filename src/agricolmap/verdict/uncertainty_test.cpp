@@ -1,0 +1,107 @@
+#include "agricolmap/verdict/uncertainty.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "agricolmap/core/random.hpp"
+
+namespace agricolmap::verdict {
+namespace {
+
+/// Smooth random texture over a map, moved by `shift(point)`.
+template <typename Shift>
+map::SignalMap texture(const Eigen::Vector2d& corner, int rows, int cols, const Shift& shift) {
+  Random random(3);
+  struct Bump {
+    Eigen::Vector2d at;
+    double size;
+    double height;
+  };
+  std::vector<Bump> bumps;
+  for (int i = 0; i < 2500; ++i) {
+    bumps.push_back({{random.uniform(-1.0, 13.0), random.uniform(-1.0, 5.0)},
+                     random.uniform(0.06, 0.15),
+                     random.normal(1.0)});
+  }
+  map::SignalMap map;
+  map.frame.corner = corner;
+  map.frame.cell = 0.04;
+  map.frame.rows = rows;
+  map.frame.cols = cols;
+  map.weight = Raster<float>(rows, cols, 1.0F);
+  for (auto& channel : map.channel) channel = Raster<float>(rows, cols);
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < cols; ++c) {
+      const Eigen::Vector2d p = map.frame.centre(r, c);
+      const Eigen::Vector2d at = p + shift(p);
+      double sum = 0.0;
+      for (const Bump& bump : bumps) {
+        const double d2 = (at - bump.at).squaredNorm() / (bump.size * bump.size);
+        if (d2 < 12.0) sum += bump.height * std::exp(-0.5 * d2);
+      }
+      map.channel[0](r, c) = static_cast<float>(sum);
+      map.channel[1](r, c) = static_cast<float>(0.5 * sum);
+    }
+  }
+  return map;
+}
+
+/// Of a strip from x = 1 to 11 m, on a map that ends at `end` [m].
+PoseUncertainty uncertaintyOf(double bend, double end = 12.0) {
+  const auto none = [](const Eigen::Vector2d&) { return Eigen::Vector2d(0.0, 0.0); };
+  const auto bent = [&](const Eigen::Vector2d& p) {
+    return Eigen::Vector2d(0.0, bend * std::sin(p.x()));
+  };
+  const map::SignalMap fixed = texture({0.0, 0.0}, 100, static_cast<int>(end / 0.04), none);
+  const map::SignalMap moving = texture({1.0, 1.0}, 50, 250, bent);
+  Evidence evidence;
+  evidence.block_side = 1.0;
+  const auto found = estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {},
+                                         0.005, {.floor = 0.0005});
+  EXPECT_TRUE(found.has_value());
+  return found.value_or(PoseUncertainty{});
+}
+
+TEST(Uncertainty, IsSmallWhereTheBlocksAgree) {
+  const PoseUncertainty exact = uncertaintyOf(0.0);
+  EXPECT_LT(exact.local_rms, 0.002);
+  EXPECT_LT(exact.expected_rms, 0.003);
+  EXPECT_GT(exact.covariance.diagonal().minCoeff(), 0.0);
+}
+
+TEST(Uncertainty, GrowsWithWhatNoAffineUndoes) {
+  const PoseUncertainty bent = uncertaintyOf(0.03);
+  EXPECT_NEAR(bent.local_rms, 0.03 / std::sqrt(2.0), 0.012);
+  EXPECT_GT(bent.expected_rms, 2.0 * uncertaintyOf(0.0).expected_rms);
+}
+
+TEST(Uncertainty, APointFarFromTheMiddleIsLessCertain) {
+  const PoseUncertainty found = uncertaintyOf(0.02);
+  const double middle = found.at(found.centre).trace();
+  const double end = found.at(found.centre + Eigen::Vector2d(5.0, 0.0)).trace();
+  EXPECT_GT(end, middle);
+  // The long direction is known better per metre than the short one.
+  EXPECT_LT(found.covariance(3, 3), found.covariance(4, 4));
+}
+
+TEST(Uncertainty, GrowsWithWhatLiesBeyondTheMap) {
+  const PoseUncertainty half = uncertaintyOf(0.02, 6.0);
+  EXPECT_LT(half.centre.x(), 4.0);
+  EXPECT_GT(half.expected_rms, 2.0 * uncertaintyOf(0.02).expected_rms);
+}
+
+TEST(Uncertainty, NeedsBlocks) {
+  const auto none = [](const Eigen::Vector2d&) { return Eigen::Vector2d(0.0, 0.0); };
+  const map::SignalMap fixed = texture({0.0, 0.0}, 60, 60, none);
+  const map::SignalMap moving = texture({0.5, 0.5}, 20, 20, none);
+  Evidence evidence;
+  EXPECT_FALSE(
+      estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, {}));
+  evidence.block_side = 1.0;
+  EXPECT_FALSE(
+      estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, {}));
+}
+
+}  // namespace
+}  // namespace agricolmap::verdict

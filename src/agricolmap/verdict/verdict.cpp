@@ -1,0 +1,189 @@
+#include "agricolmap/verdict/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "agricolmap/core/transform.hpp"
+
+namespace agricolmap::verdict {
+
+const char* toString(Status status) {
+  switch (status) {
+    case Status::kAccepted:
+      return "accepted";
+    case Status::kAmbiguous:
+      return "ambiguous";
+    case Status::kRejected:
+      break;
+  }
+  return "rejected";
+}
+
+void describe(OptionTable& table, VerdictOptions& options) {
+  table.number("min_probability", options.min_probability, 0.0, 1.0, "",
+               "least probability of being within 5 cm RMS of the truth in the plane");
+  table.number("min_uniqueness", options.min_uniqueness, 0.0, 100.0, "",
+               "least ratio of the peak to the highest other one, whatever else speaks for it");
+  table.number("rival", options.rival, 0.0, 1.0, "",
+               "other placements with this share of the best one's significance rival it");
+  table.number("min_fit", options.min_fit, 0.0, 1000.0, "deviations",
+               "significance from which on rivals mean ambiguity, not chance");
+  table.number("min_overlap", options.min_overlap, 0.0, 1.0, "",
+               "least share of the moving map that must lie on the fixed map");
+  table.number("scale_margin", options.scale_margin, 0.0, 1.0, "",
+               "how far beyond the prior's limits the scales may come out, relative");
+  table.number("heading_margin_deg", options.heading_margin_deg, 0.0, 180.0, "deg",
+               "how far beyond the prior's limit the heading may come out");
+}
+
+Verdict rejectBecause(std::string reason) {
+  return {Status::kRejected, {std::move(reason)}, 0.0, 0.0};
+}
+
+namespace {
+
+// Below these a piece of evidence is worth a sentence in the reasons of a refusal.
+constexpr double kWeakUniqueness = 1.8;
+constexpr double kWeakAgreement = 0.55;
+constexpr double kLargeError = 0.03;  // [m]
+
+/// A probability in words: nothing is certain.
+std::string percent(double probability) {
+  if (probability > 0.9995) return "> 99.9 %";
+  if (probability < 0.0005) return "< 0.1 %";
+  return fmt::format("{:.1f} %", 100.0 * probability);
+}
+
+/// What no evidence can outweigh.
+std::vector<std::string> contradictions(const Finding& finding, const locate::SearchSpace& space,
+                                        const VerdictOptions& options) {
+  std::vector<std::string> against;
+  if (finding.overlap < options.min_overlap) {
+    against.push_back(
+        fmt::format("only {:.0f} % of the moving map lies on the fixed map (at least "
+                    "{:.0f} % needed)",
+                    100 * finding.overlap, 100 * options.min_overlap));
+  }
+  const HorizontalParts parts =
+      splitHorizontal(space.scale_axes.transpose() * finding.pose.linear() * space.scale_axes);
+  const double scale_limit = std::exp(locate::logScaleLimit(space.uncertainty)) + options.scale_margin;
+  for (const auto& [axis, scale] : {std::pair{"x", parts.scale_x}, {"y", parts.scale_y}}) {
+    if (!(scale < scale_limit && scale > 1.0 / scale_limit)) {
+      against.push_back(
+          fmt::format("the scale along {} came out as {:.3f}, beyond what the prior "
+                      "allows ({:.3f} to {:.3f})",
+                      axis, scale, 1.0 / scale_limit, scale_limit));
+    }
+  }
+  const double heading = std::abs(parts.yaw) * 180.0 / std::numbers::pi;
+  if (!(heading <= space.uncertainty.heading_deg + options.heading_margin_deg)) {
+    against.push_back(
+        fmt::format("the heading came out {:.1f} deg off the prior's, which allows "
+                    "{:.1f} deg",
+                    heading, space.uncertainty.heading_deg));
+  }
+  return against;
+}
+
+double expectedError(const Finding& finding) {
+  if (!finding.uncertainty) return std::numeric_limits<double>::infinity();
+  return std::hypot(finding.uncertainty->expected_rms, finding.uncertainty->local_rms);
+}
+
+/// What weakens a registration that is not likely enough.
+std::vector<std::string> doubts(const Finding& finding, double probability,
+                                const VerdictOptions& options) {
+  const Evidence& evidence = finding.evidence;
+  std::vector<std::string> against;
+  if (evidence.uniqueness < std::max(kWeakUniqueness, options.min_uniqueness)) {
+    against.push_back(
+        fmt::format("another place fits almost as well: the peak is {:.2f} times the "
+                    "highest other one",
+                    evidence.uniqueness));
+  }
+  if (evidence.agreement() < kWeakAgreement) {
+    against.push_back(fmt::format("only {} of {} blocks, placed alone, agree with the whole",
+                                  evidence.agreeing, evidence.blocks.size()));
+  }
+  const double error = expectedError(finding);
+  if (!(error < kLargeError)) {
+    against.push_back(
+        std::isfinite(error)
+            ? fmt::format("the blocks of the strip disagree with it by {:.1f} cm RMS", 100 * error)
+            : std::string("too few blocks of the strip can be compared"));
+  }
+  if (probability < options.min_probability) {
+    against.push_back(
+        fmt::format("the probability of the right place (within 5 cm in the plane) is {} (at "
+                    "least {:.0f} % needed)",
+                    percent(probability), 100 * options.min_probability));
+  }
+  return against;
+}
+
+std::vector<std::string> support(const Finding& finding, double plane, double all) {
+  const Evidence& evidence = finding.evidence;
+  std::vector<std::string> reasons = {
+      fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness),
+      fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
+                  evidence.blocks.size()),
+      fmt::format("the probability of the right place (within 5 cm in the plane) is {}, "
+                  "heights included {}",
+                  percent(plane), percent(all))};
+  if (finding.uncertainty) {
+    reasons.push_back(fmt::format(
+        "expected error {:.1f} cm RMS in the plane and {:.1f} cm in height; {:.1f} cm "
+        "of local deformation remain that no affine undoes",
+        100 * finding.uncertainty->expected_rms, 100 * finding.uncertainty->height_deviation,
+        100 * finding.uncertainty->local_rms));
+  }
+  return reasons;
+}
+
+}  // namespace
+
+VerdictFacts factsOf(const Finding& finding) {
+  const Evidence& evidence = finding.evidence;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::optional<PoseUncertainty>& uncertainty = finding.uncertainty;
+  return {.uniqueness = evidence.uniqueness,
+          .significance = evidence.significance,
+          .agreeing = static_cast<double>(evidence.agreeing),
+          .blocks = static_cast<double>(evidence.blocks.size()),
+          .expected_rms = uncertainty ? uncertainty->expected_rms : unknown,
+          .local_rms = uncertainty ? uncertainty->local_rms : unknown,
+          .height_deviation = uncertainty ? uncertainty->height_deviation : unknown,
+          .overlap = finding.overlap};
+}
+
+Verdict judge(const Finding& finding, const locate::SearchSpace& space, const VerdictOptions& options) {
+  std::vector<std::string> against = contradictions(finding, space, options);
+  if (!against.empty()) return {Status::kRejected, std::move(against), 0.0, 0.0};
+  const Evidence& evidence = finding.evidence;
+  const VerdictFacts facts = factsOf(finding);
+  const double all = rightProbability(facts);
+  const double plane = planeProbability(facts);
+  const auto rivals = std::count_if(
+      finding.rivals.begin(), finding.rivals.end(),
+      [&](double significance) { return significance >= options.rival * evidence.significance; });
+  if (rivals > 0 && evidence.significance >= options.min_fit) {
+    // Right at most as often as the best of so many equals is the true one.
+    const double most = 1.0 / (1.0 + static_cast<double>(rivals));
+    return {Status::kAmbiguous,
+            {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
+                         "a better initial guess (--prior, --prior-sigma) can",
+                         rivals + 1)},
+            std::min(all, most),
+            std::min(plane, most)};
+  }
+  if (plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
+    return {Status::kRejected, doubts(finding, plane, options), all, plane};
+  }
+  return {Status::kAccepted, support(finding, plane, all), all, plane};
+}
+
+}  // namespace agricolmap::verdict

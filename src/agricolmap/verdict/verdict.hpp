@@ -1,0 +1,56 @@
+// Stage 8: accept, reject or say that the data cannot tell, from evidence, with the reasons in
+// plain words.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "agricolmap/locate/association.hpp"
+#include "agricolmap/verdict/evidence.hpp"
+#include "agricolmap/verdict/probability.hpp"
+#include "agricolmap/verdict/uncertainty.hpp"
+#include "agricolmap/core/options.hpp"
+
+namespace agricolmap::verdict {
+
+/// kAmbiguous: the maps fit, but in several places that the data cannot tell apart.
+enum class Status { kAccepted, kRejected, kAmbiguous };
+const char* toString(Status status);
+
+struct VerdictOptions {
+  double min_probability = 0.8;  ///< that the registration is right in the plane
+  double min_uniqueness = 1.2;   ///< least ratio of the peak to the next one, whatever else speaks
+  double rival = 0.8;            ///< placements of this share of the best significance are rivals
+  double min_fit = 8.0;          ///< significance from which on rivals are more than chance
+  double min_overlap = 0.25;
+  double scale_margin = 0.05;
+  double heading_margin_deg = 2.0;
+};
+void describe(OptionTable& table, VerdictOptions& options);
+
+struct Verdict {
+  Status status = Status::kRejected;
+  std::vector<std::string> reasons;  ///< why, in plain words; never empty
+  double probability = 0.0;          ///< calibrated, that the result is within 5 cm RMS
+  double plane_probability = 0.0;    ///< that it is so in the plane, whatever the height
+};
+
+/// What is judged.
+struct Finding {
+  Evidence evidence;
+  std::optional<PoseUncertainty> uncertainty;
+  double overlap = 0.0;  ///< share of the moving map's cells that the fixed map sees
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
+  std::vector<double> rivals;  ///< significances of the other distinct placements
+};
+
+/// What the probability of a finding rests on.
+VerdictFacts factsOf(const Finding& finding);
+
+Verdict judge(const Finding& finding, const locate::SearchSpace& space, const VerdictOptions& options);
+
+/// The verdict on a pair for which a stage found no answer at all.
+Verdict rejectBecause(std::string reason);
+
+}  // namespace agricolmap::verdict

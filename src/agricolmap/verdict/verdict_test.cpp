@@ -1,0 +1,127 @@
+#include "agricolmap/verdict/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "agricolmap/verdict/probability.hpp"
+
+namespace agricolmap::verdict {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A registration that everything speaks for.
+Finding clearFinding() {
+  Finding finding;
+  finding.overlap = 1.0;
+  finding.evidence.significance = 24.0;
+  finding.evidence.uniqueness = 4.5;
+  finding.evidence.blocks.resize(16);
+  finding.evidence.agreeing = 15;
+  PoseUncertainty uncertainty;
+  uncertainty.expected_rms = 0.008;
+  uncertainty.local_rms = 0.009;
+  uncertainty.height_deviation = 0.012;
+  finding.uncertainty = uncertainty;
+  finding.rivals = {5.0, 4.0};
+  return finding;
+}
+
+/// One that nothing does: a strip of another field.
+Finding chanceFinding() {
+  Finding finding = clearFinding();
+  finding.evidence.significance = 4.5;
+  finding.evidence.uniqueness = 1.0;
+  finding.evidence.agreeing = 1;
+  finding.uncertainty->expected_rms = 0.03;
+  finding.uncertainty->local_rms = 0.06;
+  finding.uncertainty->height_deviation = 0.023;  // the median of wrong answers
+  finding.rivals = {4.4, 4.3, 4.1};
+  return finding;
+}
+
+TEST(Verdict, AcceptsWhatEverythingSpeaksFor) {
+  const Verdict verdict = judge(clearFinding(), {}, {});
+  EXPECT_EQ(verdict.status, Status::kAccepted);
+  EXPECT_GT(verdict.probability, 0.95);
+  EXPECT_GE(verdict.reasons.size(), 3U);
+}
+
+TEST(Verdict, ChanceIsRejectedThoughItsRivalsAreEqual) {
+  const Verdict verdict = judge(chanceFinding(), {}, {});
+  EXPECT_EQ(verdict.status, Status::kRejected);
+  EXPECT_LT(verdict.probability, 0.05);
+  EXPECT_THAT(verdict.reasons.front(), HasSubstr("another place fits almost as well"));
+}
+
+TEST(Verdict, EqualPlacesThatFitAreAmbiguous) {
+  Finding finding = clearFinding();
+  finding.evidence.uniqueness = 1.02;
+  finding.rivals = {23.5, 22.0, 5.0};
+  const Verdict verdict = judge(finding, {}, {});
+  EXPECT_EQ(verdict.status, Status::kAmbiguous);
+  EXPECT_LE(verdict.probability, 1.0 / 3.0);
+  EXPECT_THAT(verdict.reasons.front(), HasSubstr("3 places"));
+}
+
+TEST(Verdict, ContradictionsOutweighAllEvidence) {
+  Finding beside = clearFinding();
+  beside.overlap = 0.1;
+  EXPECT_EQ(judge(beside, {}, {}).status, Status::kRejected);
+  Finding stretched = clearFinding();
+  stretched.pose.linear() << 1.7, 0.0, 0.0, 1.0;
+  EXPECT_EQ(judge(stretched, {}, {}).probability, 0.0);
+  Finding turned = clearFinding();
+  turned.pose.linear() = Eigen::Rotation2Dd(0.5).toRotationMatrix();
+  EXPECT_THAT(judge(turned, {}, {}).reasons.front(), HasSubstr("heading"));
+}
+
+TEST(Verdict, WithoutAnUncertaintyThereIsLessToTrust) {
+  Finding finding = clearFinding();
+  const double known = judge(finding, {}, {}).probability;
+  finding.uncertainty.reset();
+  EXPECT_LT(judge(finding, {}, {}).probability, known);
+}
+
+TEST(Probability, StaysWithinItsBoundsForAnything) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double value : {0.0, -1.0, 1e300, infinite, nan}) {
+    const VerdictFacts facts{value, value, value, value, value, value, value, value};
+    const double probability = rightProbability(facts);
+    EXPECT_GE(probability, 0.0) << value;
+    EXPECT_LE(probability, 1.0) << value;
+  }
+}
+
+TEST(Probability, WhatIsRightInSpaceIsRightInThePlane) {
+  for (double uniqueness = 0.5; uniqueness < 4.0; uniqueness += 0.5) {
+    for (double significance = 2.0; significance < 20.0; significance += 2.0) {
+      const VerdictFacts facts{.uniqueness = uniqueness,
+                               .significance = significance,
+                               .agreeing = 5,
+                               .blocks = 10,
+                               .expected_rms = 0.01,
+                               .local_rms = 0.01,
+                               .height_deviation = 0.012,
+                               .overlap = 0.9};
+      EXPECT_GE(planeProbability(facts), rightProbability(facts));
+    }
+  }
+}
+
+TEST(Probability, GrowsWithUniquenessAndAgreement) {
+  VerdictFacts facts = factsOf(clearFinding());
+  const double whole = rightProbability(facts);
+  facts.uniqueness = 1.2;
+  EXPECT_LT(rightProbability(facts), whole);
+  facts = factsOf(clearFinding());
+  facts.agreeing = 3.0;
+  EXPECT_LT(rightProbability(facts), whole);
+}
+
+}  // namespace
+}  // namespace agricolmap::verdict
