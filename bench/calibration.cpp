@@ -33,7 +33,7 @@ CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string
   std::vector<double> right;
   for (const PairRow& row : rows) {
     if (!preset.empty() && row.preset != preset) continue;
-    verdict::VerdictFeatures features = verdict::verdictFeatures(verdict::factsOf(row));
+    verdict::VerdictFeatures features = verdict::verdictFeatures(factsOf(row));
     if (about == RightAbout::kPlane) features[verdict::kHeightFeature] = 0.0;
     if (!std::isfinite(row.errors.rms) || !std::isfinite(row.uniqueness)) {
       ++samples.without_answer;
@@ -60,7 +60,7 @@ CalibrationSamples samplesOf(const std::vector<PairRow>& rows, const std::string
 Eigen::VectorXd featureSigns() {
   Eigen::VectorXd signs(verdict::kVerdictFeatures);
   for (std::size_t i = 0; i < verdict::kVerdictFeatures; ++i) {
-    signs(static_cast<Eigen::Index>(i)) = kVerdictFeatureSigns[i];
+    signs(static_cast<Eigen::Index>(i)) = verdict::kVerdictFeatureSigns[i];
   }
   return signs;
 }
@@ -124,7 +124,7 @@ std::string calibrationText(const Calibration& calibration) {
   std::string text = calibration.origin + "\n";
   text += fmt::format("{:28} {:10.4f}\n", "intercept", calibration.model.intercept);
   for (std::size_t k = 0; k < verdict::kVerdictFeatures; ++k) {
-    text += fmt::format("{:28} {:10.4f}\n", kVerdictFeatureNames[k],
+    text += fmt::format("{:28} {:10.4f}\n", verdict::kVerdictFeatureNames[k],
                         calibration.model.weights(static_cast<Eigen::Index>(k)));
   }
   text += fmt::format("\nrows without an answer: {}, {} of them of solvable pairs\n",
@@ -153,7 +153,7 @@ std::string calibrationJson(const Calibration& calibration) {
   json["right"] = {{"rms_m", kRightRms}};
   json["intercept"] = calibration.model.intercept;
   for (std::size_t k = 0; k < verdict::kVerdictFeatures; ++k) {
-    json["weights"][kVerdictFeatureNames[k]] =
+    json["weights"][verdict::kVerdictFeatureNames[k]] =
         calibration.model.weights(static_cast<Eigen::Index>(k));
   }
   json["threshold"] = {{"probability", calibration.threshold.probability},

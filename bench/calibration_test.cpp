@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "agricolmap/verdict/probability.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/verdict/probability.hpp"
 
 namespace agricolmap::campaign {
 namespace {

@@ -78,8 +78,9 @@ std::string CampaignCase::flightText(int seed) const {
 
 std::string CampaignCase::text() const {
   simulate::SimulationOptions copy = options;
-  std::string text = fmt::format("{} {} {} {}\n{}", name, static_cast<int>(source),
-                                 strips_per_field, scale_unknown, config::dumpYaml(optionTable(copy)));
+  std::string text =
+      fmt::format("{} {} {} {}\n{}", name, static_cast<int>(source), strips_per_field,
+                  scale_unknown, config::dumpYaml(optionTable(copy)));
   for (const OptionRange& range : ranges) {
     text += fmt::format("{} {} {} {}\n", range.path, range.low, range.high,
                         fmt::join(range.values, " "));
@@ -114,7 +115,8 @@ const std::vector<NamedCrop>& namedCrops() {
 
 std::vector<NamedCrop> rowCrops() {
   std::vector<NamedCrop> crops = namedCrops();
-  std::erase_if(crops, [](const NamedCrop& one) { return one.crop == simulate::Crop::kWinterWheat; });
+  std::erase_if(crops,
+                [](const NamedCrop& one) { return one.crop == simulate::Crop::kWinterWheat; });
   return crops;
 }
 
@@ -152,14 +154,14 @@ CampaignCase cropCase(std::string name, simulate::Crop crop, const GuessError& e
 void forgetGuess(CampaignCase& made) {
   // Uniform, as every heading must be as likely as every other.
   setGuess(made.options, {made.options.field.width, 180.0, 0.30}, true);
-  made.prior = locate::PriorUncertainty::none();
+  made.prior = PriorUncertainty::none();
 }
 
 void shiftByRows(CampaignCase& made) {
   const double spacing = made.options.field.row_spacing;
   made.options.geotag.across_rows = spacing * std::max(1.0, std::round(0.5 / spacing));
   setGuess(made.options, {0.1, 1.0, 0.03}, false);
-  made.prior = locate::PriorUncertainty{.translation = 0.3, .heading_deg = 3.0, .scale = 0.05};
+  made.prior = PriorUncertainty{.translation = 0.3, .heading_deg = 3.0, .scale = 0.05};
 }
 
 }  // namespace agricolmap::campaign

@@ -39,7 +39,7 @@ struct CampaignCase {
   int max_pairs = 0;         ///< 0: as many as the campaign asks for
   int strips_per_field = 1;  ///< so many consecutive seeds share a field and the drone's view of it
   /// What the registration is told of the guess; nothing: its own default, the paper's.
-  std::optional<locate::PriorUncertainty> prior;
+  std::optional<PriorUncertainty> prior;
   bool scale_unknown = false;  ///< the registration is told that the moving file's unit is unknown
 
   /// The seed of the field that the pair of this seed lies in, and the strip's number in it.

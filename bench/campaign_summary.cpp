@@ -22,9 +22,10 @@ SummaryLine summariseOne(const std::vector<const PairRow*>& rows) {
     line.negative = row->negative;
     line.accepted += row->accepted ? 1 : 0;
     line.successes += row->success() ? 1 : 0;
-    line.found +=
-        !row->negative && row->accepted && row->errors.rms_horizontal <= evaluate::SuccessLimits{}.rms ? 1
-                                                                                             : 0;
+    line.found += !row->negative && row->accepted &&
+                          row->errors.rms_horizontal <= evaluate::SuccessLimits{}.rms
+                      ? 1
+                      : 0;
     line.false_accepts += row->accepted && !row->correct ? 1 : 0;
     times.push_back(row->total_s);
     if (!row->success()) continue;

@@ -23,14 +23,15 @@ constexpr std::string_view kHeader =
 constexpr std::size_t kColumns = 39;
 
 using ErrorField = double evaluate::RegistrationErrors::*;
-constexpr std::array<ErrorField, 8> kErrorFields = {&evaluate::RegistrationErrors::rms,
-                                                    &evaluate::RegistrationErrors::rms_horizontal,
-                                                    &evaluate::RegistrationErrors::rms_vertical,
-                                                    &evaluate::RegistrationErrors::worst,
-                                                    &evaluate::RegistrationErrors::rms_to_best_affine,
-                                                    &evaluate::RegistrationErrors::translation,
-                                                    &evaluate::RegistrationErrors::rotation,
-                                                    &evaluate::RegistrationErrors::scale};
+constexpr std::array<ErrorField, 8> kErrorFields = {
+    &evaluate::RegistrationErrors::rms,
+    &evaluate::RegistrationErrors::rms_horizontal,
+    &evaluate::RegistrationErrors::rms_vertical,
+    &evaluate::RegistrationErrors::worst,
+    &evaluate::RegistrationErrors::rms_to_best_affine,
+    &evaluate::RegistrationErrors::translation,
+    &evaluate::RegistrationErrors::rotation,
+    &evaluate::RegistrationErrors::scale};
 using EvidenceField = double PairRow::*;
 constexpr std::array<EvidenceField, 15> kEvidenceFields = {
     &PairRow::uniqueness,         &PairRow::agreement,

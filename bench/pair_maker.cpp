@@ -95,7 +95,8 @@ CampaignPair PairMaker::make(const CampaignCase& chosen, int seed) {
   return fromStrip(ortho_->strip(options, strip), {ortho_, &ortho_->uav()});
 }
 
-void PairMaker::fly(const CampaignCase& chosen, int seed, const simulate::SimulationOptions& options) {
+void PairMaker::fly(const CampaignCase& chosen, int seed,
+                    const simulate::SimulationOptions& options) {
   std::string flight = chosen.flightText(seed);
   if (flight == flown_) return;
   // A hectare takes gigabytes: the old view goes before the new one is made.
@@ -116,16 +117,17 @@ void PairMaker::fly(const CampaignCase& chosen, int seed, const simulate::Simula
 simulate::OrthoField PairMaker::readBeets(int seed) const {
   // Another window for each seed, by up to half a metre.
   Random random = Random::stream(static_cast<std::uint64_t>(seed), 0xBEE7);
-  io::PixelWindow window{kBeetMiddleCol - kBeetWindow / 2 - 50, kBeetMiddleRow + 51 - kBeetWindow / 2,
-                     kBeetWindow, kBeetWindow};
+  io::PixelWindow window{kBeetMiddleCol - kBeetWindow / 2 - 50,
+                         kBeetMiddleRow + 51 - kBeetWindow / 2, kBeetWindow, kBeetWindow};
   window.col += static_cast<int>(random.below(101));
   window.row -= static_cast<int>(random.below(101));
-  return simulate::readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, beetFileOptions(), window);
+  return simulate::readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}},
+                             beetFileOptions(), window);
 }
 
 simulate::OrthoField PairMaker::readAllBeets() const {
-  simulate::OrthoField field =
-      simulate::readOrtho({.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, beetFileOptions(), kAllBeets);
+  simulate::OrthoField field = simulate::readOrtho(
+      {.ortho = shared_ / kBeetFile, .dsm = {}, .dtm = {}}, beetFileOptions(), kAllBeets);
   if (field.valid.empty()) {
     field.valid = Raster<std::uint8_t>(field.colour.rows(), field.colour.cols());
     for (std::uint8_t& valid : field.valid) valid = 1;
@@ -146,8 +148,8 @@ void PairMaker::loadSoybean() {
       io::importOrthoDsm(folder / "soy_ortho.tif", folder / "soy_dsm.tif"));
   simulate::OrthoField& field = loaded.field;
   field = simulate::readOrtho({.ortho = folder / "soy_ortho.tif",
-                     .dsm = folder / "soy_dsm.tif",
-                     .dtm = folder / "soy_dtm.tif"});
+                               .dsm = folder / "soy_dsm.tif",
+                               .dtm = folder / "soy_dtm.tif"});
   field.row_heading = kSoybeanRowHeading;
   // The simulator counts heights from the ground in the middle of the mosaic.
   const float zero = field.ground(field.ground.rows() / 2, field.ground.cols() / 2);
@@ -160,8 +162,8 @@ CampaignPair PairMaker::soybeanPair(const simulate::SimulationOptions& options, 
   simulate::SimulationOptions here = options;
   here.uav.gsd = soybean_->field.gsd;
   // The fixed cloud is the real one, as imported; only the strip passes through the simulator.
-  CampaignPair made =
-      fromStrip(simulate::SimulatedOrtho(soybean_->field, here).strip(here, strip), soybean_->cloud);
+  CampaignPair made = fromStrip(simulate::SimulatedOrtho(soybean_->field, here).strip(here, strip),
+                                soybean_->cloud);
   const Eigen::Translation3d move(soybean_->place);
   made.prior = move * made.prior;
   made.truth.best_affine = move * made.truth.best_affine;

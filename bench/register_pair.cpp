@@ -61,7 +61,7 @@ pipeline::RegistrationOptions variant(const std::string& text, const CampaignCas
   pipeline::RegistrationOptions options = pipeline::preset(text.substr(0, end));
   const OptionTable table = optionTable(options);
   if (chosen.prior) options.prior = *chosen.prior;
-  if (chosen.scale_unknown) parseOption(*table.find(kScaleUnknown), "true")();
+  if (chosen.scale_unknown) config::parseOption(*table.find(kScaleUnknown), "true")();
   for (std::size_t at = end; at != std::string::npos;) {
     const std::size_t next = text.find(':', at + 1);
     const std::string setting = text.substr(at + 1, next - at - 1);
@@ -72,7 +72,7 @@ pipeline::RegistrationOptions variant(const std::string& text, const CampaignCas
       throw UsageError(
           fmt::format("--presets {}: '{}' is not KEY=VALUE of a known option", text, setting));
     }
-    parseOption(*field, setting.substr(equals + 1))();
+    config::parseOption(*field, setting.substr(equals + 1))();
     at = next;
   }
   return options;
@@ -95,8 +95,8 @@ PairRow registerPair(const CampaignPair& pair, const std::string& preset_name,
   StageTimes times;
   const Stopwatch watch;
   try {
-    const pipeline::Registration result =
-        pipeline::registerClouds(*pair.fixed, pair.moving, pair.prior, variant(preset_name, chosen), times);
+    const pipeline::Registration result = pipeline::registerClouds(
+        *pair.fixed, pair.moving, pair.prior, variant(preset_name, chosen), times);
     row.total_s = watch.seconds();
     row.accepted = result.verdict.status == verdict::Status::kAccepted;
     row.status = toString(result.verdict.status);

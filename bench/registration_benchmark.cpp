@@ -14,18 +14,18 @@ namespace agricolmap {
 namespace {
 
 /// The pair, its files and what each stage starts from.
-class report::Scene {
+class Scene {
  public:
-  static const report::Scene& get() {
-    static const report::Scene scene;
+  static const Scene& get() {
+    static const Scene scene;
     return scene;
   }
-  ~report::Scene() {
+  ~Scene() {
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
   }
-  report::Scene(const report::Scene&) = delete;
-  report::Scene& operator=(const report::Scene&) = delete;
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
 
   simulate::SimulatedPair pair;
   pipeline::RegistrationOptions options = pipeline::preset("default");
@@ -33,7 +33,7 @@ class report::Scene {
   std::filesystem::path folder;
 
  private:
-  report::Scene() {
+  Scene() {
     simulate::SimulationOptions simulation = simulate::cropPreset(simulate::Crop::kSoybean);
     simulation.seed = 4242;
     simulation.geotag.translation = 5.0;
@@ -57,7 +57,7 @@ void countPoints(benchmark::State& state, std::size_t points) {
 }
 
 void readPly(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(io::readCloud(scene.folder / "uav.ply"));
     benchmark::DoNotOptimize(io::readCloud(scene.folder / "ugv.ply"));
@@ -72,7 +72,7 @@ map::Box2 windowOf(const map::GridMap& map) {
 }
 
 void level(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
         map::levelCloud(scene.pair.uav, Eigen::Affine3d::Identity(), scene.options.level));
@@ -83,19 +83,19 @@ void level(benchmark::State& state) {
 }
 
 void grid(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   const pipeline::Registration& r = scene.result;
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(map::makeGridMap(scene.pair.uav, r.frames.levelled_from_fixed,
-                                         windowOf(r.fixed_map), scene.options.grid));
+                                              windowOf(r.fixed_map), scene.options.grid));
     benchmark::DoNotOptimize(map::makeGridMap(scene.pair.ugv, r.frames.levelled_from_moving,
-                                         windowOf(r.moving_map), scene.options.grid));
+                                              windowOf(r.moving_map), scene.options.grid));
   }
   countPoints(state, scene.pair.uav.size() + scene.pair.ugv.size());
 }
 
 void search(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   const pipeline::Registration& r = scene.result;
   locate::CorrelationOptions options = scene.options.search;
   options.signal = scene.options.signal;
@@ -107,7 +107,7 @@ void search(benchmark::State& state) {
 }
 
 void flow(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   const pipeline::Registration& r = scene.result;
   const paper::FlowAssociation association(scene.options.flow);
   for ([[maybe_unused]] auto _ : state) {
@@ -117,7 +117,7 @@ void flow(benchmark::State& state) {
 }
 
 void refine(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   const pipeline::Registration& r = scene.result;
   for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
@@ -128,7 +128,7 @@ void refine(benchmark::State& state) {
 }
 
 void verdict(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   const pipeline::Registration& r = scene.result;
   const pipeline::PoseRefinement refinement(r.fixed_map, r.moving_map, r.space, scene.options);
   for ([[maybe_unused]] auto _ : state) {
@@ -139,11 +139,11 @@ void verdict(benchmark::State& state) {
 }
 
 void whole(benchmark::State& state) {
-  const report::Scene& scene = report::Scene::get();
+  const Scene& scene = Scene::get();
   for ([[maybe_unused]] auto _ : state) {
     StageTimes times;
-    benchmark::DoNotOptimize(
-        pipeline::registerClouds(scene.pair.uav, scene.pair.ugv, scene.pair.prior, scene.options, times));
+    benchmark::DoNotOptimize(pipeline::registerClouds(scene.pair.uav, scene.pair.ugv,
+                                                      scene.pair.prior, scene.options, times));
   }
 }
 

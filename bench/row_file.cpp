@@ -39,15 +39,15 @@ std::string_view takeLine(std::string_view& text) {
 /// `text` consists of whole lines.
 RowLines split(std::string_view text, const std::filesystem::path& path, std::string_view header,
                std::string_view program) {
-  const std::string_view first = io::takeLine(text);
-  if (!first.starts_with("# ") || io::takeLine(text) != header) {
+  const std::string_view first = takeLine(text);
+  if (!first.starts_with("# ") || takeLine(text) != header) {
     throw InputError(
         fmt::format("{}: was not written by this version of {}; choose another --output",
                     path.string(), program));
   }
   RowLines lines;
   lines.identity = std::string(first.substr(2));
-  while (!text.empty()) lines.rows.emplace_back(io::takeLine(text));
+  while (!text.empty()) lines.rows.emplace_back(takeLine(text));
   return lines;
 }
 

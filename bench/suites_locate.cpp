@@ -67,7 +67,8 @@ class Builder {
     for (const auto& [name, crop] : namedCrops()) {
       add("prior-hard-" + name, crop, {.max_rms = 0.012, .max_refused = 0.03});
     }
-    for (const simulate::Crop crop : {simulate::Crop::kSoybean, simulate::Crop::kSugarBeet10m, simulate::Crop::kSugarBeet20m}) {
+    for (const simulate::Crop crop :
+         {simulate::Crop::kSoybean, simulate::Crop::kSugarBeet10m, simulate::Crop::kSugarBeet20m}) {
       const std::string& name = namedCrop(crop).name;
       CampaignCase& unit = add("scale-unknown-" + name, crop, {.min_success = 0.95});
       forgetGuess(unit);

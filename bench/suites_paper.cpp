@@ -8,8 +8,8 @@ namespace agricolmap::campaign {
 namespace {
 
 CampaignCase beetMosaicCase(bool uniform) {
-  CampaignCase made = cropCase("semireal-sugarbeet", simulate::Crop::kSugarBeet10m, {3.0, 6.0, 0.15}, uniform,
-                               {.min_success = 0.98, .max_rms = 0.008});
+  CampaignCase made = cropCase("semireal-sugarbeet", simulate::Crop::kSugarBeet10m,
+                               {3.0, 6.0, 0.15}, uniform, {.min_success = 0.98, .max_rms = 0.008});
   made.source = PairSource::kBeetMosaic;
   return made;
 }

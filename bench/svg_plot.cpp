@@ -10,8 +10,8 @@ namespace {
 
 // Sizes in user units, pixels where nothing scales them.
 constexpr double kPlotHeight = 190.0;
-constexpr double kLeft = 62.0;  // of the first panel: room for the axis of y
-constexpr double report::kGap = 26.0;   // between panels
+constexpr double kLeft = 62.0;         // of the first panel: room for the axis of y
+constexpr double kGap = 26.0;  // between panels
 constexpr double kRight = 18.0;
 constexpr double kTop = 58.0;     // room for the legend and the panels' titles
 constexpr double kBottom = 62.0;  // room for the axis of x and the note
@@ -59,9 +59,9 @@ text { font: 12px "DejaVu Sans", Verdana, sans-serif; fill: #6e7781; }
 )";
 
 /// Places of one panel.
-class simulate::Canvas {
+class Canvas {
  public:
-  simulate::Canvas(double left, double width, const PlotAxis& x, const PlotAxis& y)
+  Canvas(double left, double width, const PlotAxis& x, const PlotAxis& y)
       : left_(left), width_(width), x_(&x), y_(&y) {}
   double left() const { return left_; }
   double right() const { return left_ + width_; }
@@ -95,7 +95,8 @@ std::string segment(double x1, double y1, double x2, double y2, std::string_view
 /// As short as it goes: 0.25, 1, 20.
 std::string tickText(double value) { return fmt::format("{:.4g}", value); }
 
-std::string drawAxes(const simulate::Canvas& canvas, const PlotPanel& panel, const PlotAxis& y, bool first) {
+std::string drawAxes(const Canvas& canvas, const PlotPanel& panel, const PlotAxis& y,
+                     bool first) {
   std::string svg;
   const double bottom = kTop + kPlotHeight;
   for (const double tick : y.ticks) {
@@ -123,7 +124,7 @@ std::string drawAxes(const simulate::Canvas& canvas, const PlotPanel& panel, con
   return svg;
 }
 
-std::string drawLine(const simulate::Canvas& canvas, const PlotLine& line) {
+std::string drawLine(const Canvas& canvas, const PlotLine& line) {
   if (line.points.empty()) return {};
   const std::string colour = classOf(line.colour);
   std::string path;
@@ -207,12 +208,12 @@ std::string escapeXml(std::string_view raw) {
 std::string drawFigure(const PlotFigure& figure) {
   const auto panels = static_cast<double>(std::max<std::size_t>(1, figure.panels.size()));
   // A single panel is no wider than one of two.
-  const double room = kWholeWidth - kLeft - kRight - report::kGap * (std::max(panels, 2.0) - 1.0);
+  const double room = kWholeWidth - kLeft - kRight - kGap * (std::max(panels, 2.0) - 1.0);
   const double width = room / std::max(panels, 2.0);
   double legend_end = 0.0;
-  const std::string legend = report::drawLegend(figure, legend_end);
-  const double whole =
-      std::max(kLeft + kRight + panels * width + report::kGap * (panels - 1.0), legend_end + kRight);
+  const std::string legend = drawLegend(figure, legend_end);
+  const double whole = std::max(kLeft + kRight + panels * width + kGap * (panels - 1.0),
+                                legend_end + kRight);
   const double height = kTop + kPlotHeight + kBottom;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
@@ -227,7 +228,8 @@ std::string drawFigure(const PlotFigure& figure) {
       middle, escapeXml(figure.y.label));
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const PlotPanel& panel = figure.panels[i];
-    const simulate::Canvas canvas(kLeft + static_cast<double>(i) * (width + report::kGap), width, panel.x, figure.y);
+    const Canvas canvas(kLeft + static_cast<double>(i) * (width + kGap), width,
+                                  panel.x, figure.y);
     svg += drawAxes(canvas, panel, figure.y, i == 0);
     for (const PlotLine& line : panel.lines) svg += drawLine(canvas, line);
   }

@@ -22,8 +22,8 @@
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
-#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/pipeline/options.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 

@@ -172,7 +172,7 @@ void writePages(const Arguments& arguments) {
     for (const Figure& figure : figures) {
       writeResult(docs / "images" / "comparison" / figure.file_name, figure.svg);
     }
-    writeResult(docs / "comparison.md", config::toMarkdown(document, "images/comparison"));
+    writeResult(docs / "comparison.md", toMarkdown(document, "images/comparison"));
   }
   fmt::print("{}\n\n{}\n", summarySentences(rows), (folder / "comparison.html").string());
 }

@@ -15,8 +15,8 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
-#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/text.hpp"
 #include "methods/method.hpp"
 
@@ -39,9 +39,9 @@ struct Arguments {
 };
 
 /// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, as for `agricolmap register`.
-locate::PriorUncertainty parsePrior(const std::string& text) {
+PriorUncertainty parsePrior(const std::string& text) {
   if (text.empty()) return {};
-  if (text == "none") return locate::PriorUncertainty::none();
+  if (text == "none") return PriorUncertainty::none();
   std::vector<double> numbers;
   std::string_view rest = text;
   while (true) {
@@ -58,7 +58,7 @@ locate::PriorUncertainty parsePrior(const std::string& text) {
         "--prior-sigma '{}': needs T_M,HEADING_DEG,SCALE_PERCENT such as 5,11.5,30, or none",
         text));
   }
-  locate::PriorUncertainty prior;
+  PriorUncertainty prior;
   prior.translation = numbers[0];
   prior.heading_deg = numbers[1];
   prior.scale = numbers[2] / 100.0;
@@ -150,7 +150,7 @@ ExitCode runMethod(const Arguments& arguments) {
   }
   io::StagedFile output(arguments.output, arguments.overwrite);
   const ThreadLimit limit(arguments.threads);
-  const locate::PriorUncertainty prior = parsePrior(arguments.prior_sigma);
+  const PriorUncertainty prior = parsePrior(arguments.prior_sigma);
   const Stopwatch reading;
   const Cloud fixed = io::readCloud(arguments.fixed);
   const Cloud moving = io::readCloud(arguments.moving);

@@ -24,7 +24,8 @@ simulate::SimulatedPair smallPair(int seed, bool other_field = false) {
 
 pipeline::Registration registerPair(const simulate::SimulatedPair& pair) {
   StageTimes times;
-  return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, pipeline::preset("default"), times);
+  return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, pipeline::preset("default"),
+                                  times);
 }
 
 TEST(Pipeline, FindsTheTruthInUtmCoordinates) {
@@ -33,12 +34,13 @@ TEST(Pipeline, FindsTheTruthInUtmCoordinates) {
   const pipeline::Registration result = registerPair(pair);
   ASSERT_TRUE(result.has_transform);
   EXPECT_EQ(result.verdict.status, verdict::Status::kAccepted);
-  const evaluate::RegistrationErrors errors =
-      evaluate::evaluateTransform(result.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
+  const evaluate::RegistrationErrors errors = evaluate::evaluateTransform(
+      result.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
   EXPECT_TRUE(errors.within({})) << "RMS " << errors.rms << " m, e_t " << errors.translation;
   EXPECT_LT(errors.rms, 0.03);
   // The initial guess was not already that good.
-  EXPECT_GT(evaluate::evaluateTransform(pair.prior, {pair.best_affine, pair.truth}, pair.ugv).rms, 0.5);
+  EXPECT_GT(evaluate::evaluateTransform(pair.prior, {pair.best_affine, pair.truth}, pair.ugv).rms,
+            0.5);
 }
 
 TEST(Pipeline, WhereTheFieldLiesMakesNoDifference) {
@@ -76,22 +78,25 @@ TEST(Pipeline, ReportsThePartsOfItsTransform) {
 }
 
 TEST(Pipeline, RejectsTheStripOfAnotherField) {
-  EXPECT_EQ(registerPair(smallPair(10, /*other_field=*/true)).verdict.status, verdict::Status::kRejected);
+  EXPECT_EQ(registerPair(smallPair(10, /*other_field=*/true)).verdict.status,
+            verdict::Status::kRejected);
 }
 
 TEST(Pipeline, FindsTheStripWithoutAGuess) {
   const simulate::SimulatedPair pair = smallPair(11);
   pipeline::RegistrationOptions options = pipeline::preset("default");
-  options.prior = locate::PriorUncertainty::none();
+  options.prior = PriorUncertainty::none();
   StageTimes times;
   // Half way round, and kilometres off.
   const Eigen::Affine3d guess = Eigen::Translation3d(3000.0, -1000.0, 50.0) * pair.prior *
                                 Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitZ());
-  const pipeline::Registration result = pipeline::registerClouds(pair.uav, pair.ugv, guess, options, times);
+  const pipeline::Registration result =
+      pipeline::registerClouds(pair.uav, pair.ugv, guess, options, times);
   ASSERT_EQ(result.verdict.status, verdict::Status::kAccepted);
-  EXPECT_LT(
-      evaluate::evaluateTransform(result.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv).rms,
-      0.05);
+  EXPECT_LT(evaluate::evaluateTransform(result.fixed_from_moving, {pair.best_affine, pair.truth},
+                                        pair.ugv)
+                .rms,
+            0.05);
 }
 
 TEST(Pipeline, TwoEqualFieldsAreAmbiguous) {
@@ -103,9 +108,10 @@ TEST(Pipeline, TwoEqualFieldsAreAmbiguous) {
     field.rgb.push_back(field.rgb[i]);
   }
   pipeline::RegistrationOptions options = pipeline::preset("default");
-  options.prior.translation = locate::kAnywhere;
+  options.prior.translation = kAnywhere;
   StageTimes times;
-  const pipeline::Registration result = pipeline::registerClouds(field, pair.ugv, pair.prior, options, times);
+  const pipeline::Registration result =
+      pipeline::registerClouds(field, pair.ugv, pair.prior, options, times);
   ASSERT_EQ(result.verdict.status, verdict::Status::kAmbiguous);
   EXPECT_LE(result.verdict.probability, 0.5);
   ASSERT_EQ(result.alternatives.size(), 1U);
@@ -124,10 +130,11 @@ TEST(Pipeline, FindsAnUnknownScale) {
   pair.ugv.origin *= static_cast<double>(kUnit);
   for (Eigen::Vector3f& p : pair.ugv.xyz) p *= kUnit;
   pipeline::RegistrationOptions options = pipeline::preset("default");
-  options.prior = locate::PriorUncertainty::none();
+  options.prior = PriorUncertainty::none();
   options.prior.scale_unknown = true;
   StageTimes times;
-  const pipeline::Registration result = pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+  const pipeline::Registration result =
+      pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
   ASSERT_EQ(result.verdict.status, verdict::Status::kAccepted);
   const evaluate::Truth truth{Eigen::Affine3d::Identity(), pair.truth};
   EXPECT_LT(evaluate::evaluateTransform(result.fixed_from_moving, truth, pair.ugv).rms, 0.05);
@@ -140,7 +147,8 @@ TEST(Pipeline, TheFlowCannotSearchEverywhere) {
   pipeline::RegistrationOptions options = pipeline::preset("paper");
   options.prior.scale_unknown = true;
   StageTimes times;
-  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times), UsageError);
+  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times),
+               UsageError);
 }
 
 TEST(Pipeline, RefusesOptionsOutsideTheirLimits) {
@@ -148,7 +156,8 @@ TEST(Pipeline, RefusesOptionsOutsideTheirLimits) {
   pipeline::RegistrationOptions options = pipeline::preset("default");
   options.grid.cell = -1.0;
   StageTimes times;
-  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times), UsageError);
+  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times),
+               UsageError);
 }
 
 }  // namespace

@@ -101,8 +101,8 @@ TEST(RealField, FindsAStripOfRealSoybeans) {
   ASSERT_GT(strip.cloud.size(), 50000U);
 
   StageTimes times;
-  const pipeline::Registration result =
-      pipeline::registerClouds(thinned(field, Random(4)), strip.cloud, guess, pipeline::preset("default"), times);
+  const pipeline::Registration result = pipeline::registerClouds(
+      thinned(field, Random(4)), strip.cloud, guess, pipeline::preset("default"), times);
   ASSERT_TRUE(result.has_transform);
   const evaluate::RegistrationErrors errors =
       evaluate::evaluateTransform(result.fixed_from_moving, strip.truth, strip.cloud);

@@ -8,8 +8,8 @@
 #include "agricolmap/control_points/control_points_file.hpp"
 #include "agricolmap/control_points/control_points_report.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
-#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -21,25 +21,30 @@ struct ControlPointsArguments {
   std::string model = "scales";
 };
 
-void writeResults(const io::StagedOutput& output, std::span<const control_points::ControlPair> pairs,
-                  const control_points::ControlEstimate& estimate, const ControlPointsArguments& arguments) {
+void writeResults(const io::StagedOutput& output,
+                  std::span<const control_points::ControlPair> pairs,
+                  const control_points::ControlEstimate& estimate,
+                  const ControlPointsArguments& arguments) {
   io::writeMatrix(output.path("truth.txt"), estimate.fixed_from_moving,
-              fmt::format("from {} control pairs, model {}, moving file -> fixed file",
-                          estimate.control.count, name(estimate.model)));
+                  fmt::format("from {} control pairs, model {}, moving file -> fixed file",
+                              estimate.control.count, name(estimate.model)));
   const auto json = control_points::controlPointsJson(pairs, estimate, arguments.pairs);
   io::writeText(output.path("control_points.json"),
-            json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+                json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
   io::writeText(output.path("residuals.csv"), control_points::residualsCsv(pairs, estimate));
 }
 
 ExitCode runControlPoints(const ControlPointsArguments& arguments, const Globals& globals) {
   std::optional<io::StagedOutput> output;
   if (!arguments.output.empty()) output.emplace(arguments.output, globals.overwrite);
-  const std::vector<control_points::ControlPair> pairs = control_points::readControlPairs(arguments.pairs);
-  const control_points::ControlOptions options{
-      .model = arguments.model == "affine" ? control_points::ControlModel::kAffine : control_points::ControlModel::kScales,
-      .seed = globals.seed};
-  const control_points::ControlEstimate estimate = control_points::estimateFromPairs(pairs, options, arguments.pairs);
+  const std::vector<control_points::ControlPair> pairs =
+      control_points::readControlPairs(arguments.pairs);
+  const control_points::ControlOptions options{.model = arguments.model == "affine"
+                                                            ? control_points::ControlModel::kAffine
+                                                            : control_points::ControlModel::kScales,
+                                               .seed = globals.seed};
+  const control_points::ControlEstimate estimate =
+      control_points::estimateFromPairs(pairs, options, arguments.pairs);
   if (output) {
     writeResults(*output, pairs, estimate, arguments);
     output->commit();

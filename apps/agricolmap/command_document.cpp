@@ -14,7 +14,8 @@ namespace {
 template <typename Options>
 void printSection(const char* verb, const char* about) {
   Options defaults;
-  fmt::print("\n## agricolmap {}\n\n{}\n\n{}", verb, about, config::toMarkdown(optionTable(defaults)));
+  fmt::print("\n## agricolmap {}\n\n{}\n\n{}", verb, about,
+             config::toMarkdown(optionTable(defaults)));
 }
 
 ExitCode runDocument() {
@@ -24,10 +25,11 @@ ExitCode runDocument() {
       "Every option is a flag (`--grid.cell 0.02`) and, for `register` and `simulate`, a key of "
       "the YAML\nfile given with `--config` (`grid:` and below it `cell: 0.02`). Flags win over "
       "the file, the file over\nthe preset. `--dump-config` prints what is in force.\n");
-  printSection<pipeline::RegistrationOptions>("register",
-                                    "Defaults are those of `--preset default`; `--preset paper` "
-                                    "and `--preset paper-literal` have "
-                                    "others.");
+  printSection<pipeline::RegistrationOptions>(
+      "register",
+      "Defaults are those of `--preset default`; `--preset paper` "
+      "and `--preset paper-literal` have "
+      "others.");
   printSection<simulate::SimulationOptions>(
       "simulate", "Defaults are those of the default crop; each `--crop` brings its own.");
   printSection<simulate::OrthoFileOptions>(

@@ -9,8 +9,8 @@
 #include "agricolmap/evaluate/metrics.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
-#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -65,7 +65,7 @@ ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals)
       evaluate::evaluateTransform(estimate, readTruth(arguments, moving), moving);
   if (!arguments.output.empty()) {
     io::StagedFile output(arguments.output, globals.overwrite);
-    io::writeText(output.path(), config::toJson(errors).dump(2) + "\n");
+    io::writeText(output.path(), toJson(errors).dump(2) + "\n");
     output.commit();
   }
   if (globals.quiet) return ExitCode::kOk;

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "agricolmap/io/cloud/cloud_writer.hpp"
-#include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/raster/raster_import.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 

@@ -12,11 +12,11 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
-#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/pipeline/registration.hpp"
-#include "agricolmap/report/pictures/pictures.hpp"
 #include "agricolmap/report/json/registration_json.hpp"
+#include "agricolmap/report/pictures/pictures.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 
@@ -39,10 +39,10 @@ struct RegisterArguments {
 };
 
 /// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, each value within its option's limits.
-void applyPriorSigma(const std::string& text, locate::PriorUncertainty& prior, const OptionTable& table) {
+void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const OptionTable& table) {
   if (text == "none") {
     const bool scale_unknown = prior.scale_unknown;
-    prior = locate::PriorUncertainty::none();
+    prior = PriorUncertainty::none();
     prior.scale_unknown = scale_unknown;
     return;
   }
@@ -56,7 +56,7 @@ void applyPriorSigma(const std::string& text, locate::PriorUncertainty& prior, c
   }
   const auto set = [&](const char* key, const std::string& value) {
     try {
-      parseOption(*table.find(key), value)();
+      config::parseOption(*table.find(key), value)();
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("--prior-sigma {}: {}", text, error.what()));
     }
@@ -67,7 +67,8 @@ void applyPriorSigma(const std::string& text, locate::PriorUncertainty& prior, c
 }
 
 /// Defaults, then the preset, then the configuration file, then flags.
-pipeline::RegistrationOptions chosenOptions(const RegisterArguments& arguments, const Globals& globals) {
+pipeline::RegistrationOptions chosenOptions(const RegisterArguments& arguments,
+                                            const Globals& globals) {
   pipeline::RegistrationOptions options = pipeline::preset(arguments.preset);
   options.flow.seed = globals.seed;
   options.affine.seed = globals.seed;
@@ -88,7 +89,8 @@ LoadedPair load(const RegisterArguments& arguments) {
   LoadedPair pair;
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
-    (i == 0 ? pair.fixed : pair.moving) = io::readCloud(i == 0 ? arguments.fixed : arguments.moving);
+    (i == 0 ? pair.fixed : pair.moving) =
+        io::readCloud(i == 0 ? arguments.fixed : arguments.moving);
   });
   return pair;
 }
@@ -131,8 +133,8 @@ std::string commandText(const std::vector<std::string>& words) {
   return text;
 }
 
-report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments, const Globals& globals,
-                                  const OptionTable& table) {
+report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments,
+                                          const Globals& globals, const OptionTable& table) {
   report::RegistrationReportInfo info;
   info.version = AGRICOLMAP_VERSION;
   info.seed = static_cast<std::uint64_t>(globals.seed);
@@ -145,11 +147,11 @@ report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments, co
 
 /// Fills `output` with everything but the report.
 std::vector<std::string> writeResults(const RegisterArguments& arguments,
-                                      const pipeline::RegistrationOptions& options, const LoadedPair& pair,
-                                      const pipeline::Registration& result, const io::StagedOutput& output,
-                                      StageTimes& times) {
-  const bool keep = result.has_transform &&
-                    (result.verdict.status == verdict::Status::kAccepted || arguments.keep_rejected);
+                                      const pipeline::RegistrationOptions& options,
+                                      const LoadedPair& pair, const pipeline::Registration& result,
+                                      const io::StagedOutput& output, StageTimes& times) {
+  const bool keep = result.has_transform && (result.verdict.status == verdict::Status::kAccepted ||
+                                             arguments.keep_rejected);
   if (keep) {
     times.run("write", [&] {
       io::writeMatrix(output.path("transform.txt"), result.fixed_from_moving);
@@ -159,7 +161,7 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
   if (arguments.no_pictures) return {};
   return times.run("pictures", [&] {
     return report::writePictures(output.folder(), result,
-                         {arguments.fixed, arguments.moving, options.evidence});
+                                 {arguments.fixed, arguments.moving, options.evidence});
   });
 }
 
@@ -182,10 +184,11 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   const LoadedPair pair = times.run("read", [&] { return load(arguments); });
   warnOfDropped(pair.fixed);
   warnOfDropped(pair.moving);
-  const pipeline::Registration result = pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, times);
+  const pipeline::Registration result =
+      pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, times);
   info.pictures = writeResults(arguments, options, pair, result, output, times);
-  report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result, times,
-                        info);
+  report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result,
+                                times, info);
   throwIfInterrupted();
   std::vector<std::string> stale = report::pictureNames();
   stale.insert(stale.end(), {"transform.txt", "aligned.ply"});

@@ -8,9 +8,9 @@
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
-#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/report/pictures/pair_picture.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 #include "common.hpp"
@@ -32,7 +32,8 @@ struct SimulateArguments {
 };
 
 /// The crop's preset, then the configuration file, then flags; the crop may come from either.
-simulate::SimulationOptions chosenOptions(const SimulateArguments& arguments, const Globals& globals) {
+simulate::SimulationOptions chosenOptions(const SimulateArguments& arguments,
+                                          const Globals& globals) {
   const auto fill = [&](simulate::SimulationOptions& options) {
     OptionTable table = optionTable(options);
     if (!arguments.config.empty()) config::loadYaml(arguments.config, table);
@@ -65,12 +66,12 @@ void writeClouds(const io::StagedOutput& output, const simulate::SimulatedPair& 
   io::writeOffset(output.path("ugv/offset.xyz"), pair.prior);
   io::writeMatrix(output.path("prior.txt"), pair.prior, "initial guess, UGV file -> UAV file");
   io::writeMatrix(output.path("truth.txt"), pair.best_affine,
-              "best affine, UGV file -> UAV file; not exact where the strip drifts");
+                  "best affine, UGV file -> UAV file; not exact where the strip drifts");
   io::writePly(output.path("truth_points.ply"), truthCloud(pair));
 }
 
-void writePicture(const io::StagedOutput& output, const simulate::SimulatedPair& pair, const std::string& field,
-                  int seed) {
+void writePicture(const io::StagedOutput& output, const simulate::SimulatedPair& pair,
+                  const std::string& field, int seed) {
   report::PairPictureInfo info;
   info.title = fmt::format("Simulated pair: {}, seed {}", field, seed);
   if (!pair.overlaps) info.title += ", of different fields";
@@ -90,11 +91,12 @@ ExitCode runSimulate(SimulateArguments& arguments, const Globals& globals) {
   io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step("simulate");
-  const simulate::SimulatedPair pair = from_ortho ? arguments.ortho.simulate(options) : simulate::simulatePair(options);
+  const simulate::SimulatedPair pair =
+      from_ortho ? arguments.ortho.simulate(options) : simulate::simulatePair(options);
   progress.step("write");
   writeClouds(output, pair);
   io::writeText(output.path("simulation.yaml"),
-            (from_ortho ? arguments.ortho.provenance() : "") + config::dumpYaml(table));
+                (from_ortho ? arguments.ortho.provenance() : "") + config::dumpYaml(table));
   if (!arguments.no_pictures) {
     progress.step("picture");
     writePicture(output, pair,

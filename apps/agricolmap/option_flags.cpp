@@ -34,7 +34,7 @@ void OptionFlags::addTo(CLI::App& app, const OptionTable& table, const std::stri
 void OptionFlags::apply(const OptionTable& table) const {
   for (const auto& [path, text] : texts_) {
     const OptionField* field = table.find(path);
-    if (field != nullptr && !text->empty()) parseOption(*field, *text)();
+    if (field != nullptr && !text->empty()) config::parseOption(*field, *text)();
   }
   table.check();
 }

@@ -78,7 +78,7 @@ bool OrthoArguments::given(const OptionFlags& flags) const {
 io::PixelWindow OrthoArguments::windowFor(const simulate::SimulationOptions& options) const {
   if (!window_.empty()) return {window_[0], window_[1], window_[2], window_[3]};
   return simulate::chooseWindow(ortho_, file_options_, options.field.width, options.field.height,
-                      static_cast<std::uint64_t>(options.seed));
+                                static_cast<std::uint64_t>(options.seed));
 }
 
 simulate::SimulatedPair OrthoArguments::simulate(simulate::SimulationOptions& options) {

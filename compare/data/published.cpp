@@ -99,8 +99,8 @@ struct CropFolder {
 };
 
 /// Calls `visit(entry, depth)` for what lies in `dir`, depth from 0; it says whether to go deeper.
-template <typename simulate::Visit>
-void walk(const fs::path& dir, const simulate::Visit& visit) {
+template <typename Visit>
+void walk(const fs::path& dir, const Visit& visit) {
   std::error_code error;
   fs::recursive_directory_iterator it(dir, fs::directory_options::follow_directory_symlink, error);
   for (; !error && it != fs::end(it); it.increment(error)) {

@@ -7,9 +7,9 @@
 #include "agricolmap/evaluate/metrics.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/test_support.hpp"
 #include "agricolmap/io/text/number_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
-#include "agricolmap/io/test_support.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
 namespace agricolmap {
@@ -71,8 +71,8 @@ TEST(Published, ASimulatedPairInThatLayout) {
   // The truth lays the row's cloud, as read, where it belongs.
   const Cloud moving = io::readCloud(pairs[0].moving_cloud);
   EXPECT_EQ(io::readCloud(pairs[0].fixed_cloud).size(), made.uav.size());
-  const evaluate::RegistrationErrors errors =
-      evaluate::evaluateTransform(*pairs[0].true_fixed_from_moving, {made.best_affine, made.truth}, moving);
+  const evaluate::RegistrationErrors errors = evaluate::evaluateTransform(
+      *pairs[0].true_fixed_from_moving, {made.best_affine, made.truth}, moving);
   EXPECT_LT(errors.rms, 0.03);
 }
 

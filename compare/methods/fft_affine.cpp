@@ -6,9 +6,9 @@
 #include <numbers>
 #include <optional>
 
-#include "agricolmap/locate/hypotheses.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/locate/hypotheses.hpp"
 #include "methods/peer_maps.hpp"
 #include "methods/plain_correlation.hpp"
 
@@ -79,7 +79,7 @@ PlainCorrelation::Piece pieceOf(const map::SignalMap& moving, const Eigen::Vecto
   return piece;
 }
 
-struct locate::Candidate {
+struct Candidate {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
   double score = 0.0;
 };
@@ -106,7 +106,7 @@ class FftAffine : public Method {
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const PeerMaps maps = makePeerMaps(input, outcome.times);
-    const std::vector<locate::Candidate> candidates =
+    const std::vector<Candidate> candidates =
         outcome.times.run("correlate", [&] { return search(maps); });
     const std::optional<Eigen::Affine2d> pose =
         outcome.times.run("refine", [&] { return refine(maps, candidates); });
@@ -121,7 +121,7 @@ class FftAffine : public Method {
 
  private:
   /// Best placements, best first.
-  std::vector<locate::Candidate> search(const PeerMaps& maps) const {
+  std::vector<Candidate> search(const PeerMaps& maps) const {
     const map::SignalMap fixed = map::makeSignalMap(maps.fixed, options_.factor, {});
     const map::SignalMap moving = map::makeSignalMap(maps.moving, options_.factor, {});
     const std::vector<locate::Hypothesis> all = hypothesesOver(maps, moving);
@@ -135,9 +135,9 @@ class FftAffine : public Method {
       most_cols = std::max(most_cols, piece.value.cols());
     }
     const PlainCorrelation correlation(fixed, most_rows, most_cols, options_.least_energy);
-    std::vector<locate::Candidate> found(all.size());
+    std::vector<Candidate> found(all.size());
     parallelFor(all.size(), [&](std::size_t i) {
-      locate::Candidate& candidate = found[i];
+      Candidate& candidate = found[i];
       candidate.pose.linear() = locate::linearOf(all[i], maps.space.scale_axes);
       const PlainCorrelation::Peak peak =
           correlation.best(pieceOf(moving, centre, candidate.pose.linear()), centre,
@@ -148,12 +148,13 @@ class FftAffine : public Method {
     return distinct(std::move(found), moving.frame);
   }
 
-  std::vector<locate::Hypothesis> hypothesesOver(const PeerMaps& maps, const map::SignalMap& moving) const {
-    const locate::PriorUncertainty& prior = maps.space.uncertainty;
+  std::vector<locate::Hypothesis> hypothesesOver(const PeerMaps& maps,
+                                                 const map::SignalMap& moving) const {
+    const PriorUncertainty& prior = maps.space.uncertainty;
     const Eigen::Vector2d half = halfExtent(moving, maps.space.scale_axes, maps.space.centre);
     const double shift = options_.step * moving.frame.cell;
     const double heading = prior.heading_deg * std::numbers::pi / 180.0;
-    const double scale = locate::logScaleLimit(prior);
+    const double scale = logScaleLimit(prior);
     std::vector<locate::Hypothesis> all;
     for (const double yaw : stepsOver(heading, shift / half.norm())) {
       for (const double x : stepsOver(scale, shift / half.x())) {
@@ -165,23 +166,26 @@ class FftAffine : public Method {
     return all;
   }
 
-  std::vector<locate::Candidate> distinct(std::vector<locate::Candidate> found, const GridFrame& frame) const {
-    std::stable_sort(found.begin(), found.end(),
-                     [](const locate::Candidate& a, const locate::Candidate& b) { return a.score > b.score; });
-    std::vector<locate::Candidate> result;
-    for (const locate::Candidate& candidate : found) {
+  std::vector<Candidate> distinct(std::vector<Candidate> found,
+                                          const GridFrame& frame) const {
+    std::stable_sort(
+        found.begin(), found.end(),
+        [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    std::vector<Candidate> result;
+    for (const Candidate& candidate : found) {
       if (result.size() == static_cast<std::size_t>(options_.candidates)) break;
       if (!(candidate.score > 0.0)) break;
-      const bool known = std::any_of(result.begin(), result.end(), [&](const locate::Candidate& better) {
-        return farthestCorner(frame, better.pose, candidate.pose) < options_.apart;
-      });
+      const bool known =
+          std::any_of(result.begin(), result.end(), [&](const Candidate& better) {
+            return farthestCorner(frame, better.pose, candidate.pose) < options_.apart;
+          });
       if (!known) result.push_back(candidate);
     }
     return result;
   }
 
   std::optional<Eigen::Affine2d> refine(const PeerMaps& maps,
-                                        const std::vector<locate::Candidate>& candidates) const {
+                                        const std::vector<Candidate>& candidates) const {
     std::vector<std::optional<refine::DenseRefineResult>> refined(candidates.size());
     std::vector<map::SignalMap> fixed;
     std::vector<map::SignalMap> moving;
@@ -208,8 +212,8 @@ class FftAffine : public Method {
     Eigen::Affine2d pose = best->fixed_from_moving;
     for (const int factor : kFine) {
       const refine::DenseRefineResult finer =
-          refine::refineDense(map::makeSignalMap(maps.fixed, factor, {}), map::makeSignalMap(maps.moving, factor, {}),
-                      pose, options_.dense);
+          refine::refineDense(map::makeSignalMap(maps.fixed, factor, {}),
+                              map::makeSignalMap(maps.moving, factor, {}), pose, options_.dense);
       if (finer.status != refine::RefineStatus::kConverged) break;
       pose = finer.fixed_from_moving;
     }

@@ -36,8 +36,8 @@ TEST(PlainCorrelation, FindsWhereAPieceWasCut) {
   EXPECT_LT(correlation.best(piece, map.frame.centre(10, 10), 0.5).score, 0.5 * peak.score);
 }
 
-locate::PriorUncertainty somePrior() {
-  locate::PriorUncertainty prior;
+PriorUncertainty somePrior() {
+  PriorUncertainty prior;
   prior.translation = 2.0;
   prior.heading_deg = 6.0;
   prior.scale = 0.10;
@@ -61,7 +61,7 @@ TEST(FftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeFftAffi
 TEST(SiftAffine, IsRightFromNearby) {
   testing::GuessError error;
   error.shift = {0.3, -0.2};
-  locate::PriorUncertainty prior = somePrior();
+  PriorUncertainty prior = somePrior();
   prior.translation = 0.5;
   prior.heading_deg = 1.0;
   prior.scale = 0.02;

@@ -56,7 +56,8 @@ Sums pairUp(const NearestPoints& fixed, const std::vector<map::VegetationPoint>&
 
 double farthestCorner(const map::Box2& box, const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
   double farthest = 0.0;
-  for (const auto which : {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
+  for (const auto which :
+       {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
     const Eigen::Vector2d corner = box.corner(which);
     farthest = std::max(farthest, (a * corner - b * corner).norm());
   }

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/locate/association.hpp"
 
 namespace agricolmap::compare {
 
@@ -19,7 +19,7 @@ struct MethodInput {
   const Cloud& fixed;
   const Cloud& moving;
   Eigen::Affine3d guess = Eigen::Affine3d::Identity();  ///< moving file → fixed file [m]
-  locate::PriorUncertainty prior = {};                          ///< how wrong the guess may be
+  PriorUncertainty prior = {};                          ///< how wrong the guess may be
   /// The true transform, moving file → fixed file: read by `-oracle-scale` variants, which take its
   /// horizontal scales and nothing else. Methods proper never see it.
   std::optional<Eigen::Affine3d> truth = std::nullopt;

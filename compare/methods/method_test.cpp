@@ -78,7 +78,7 @@ TEST(Product, DefaultFindsTheStrip) {
 TEST(Product, PaperChainFindsTheStripAndSaysItsMatches) {
   testing::GuessError error;
   error.shift = {0.6, -0.4};
-  locate::PriorUncertainty prior;
+  PriorUncertainty prior;
   prior.translation = 1.0;
   prior.heading_deg = 2.0;
   prior.scale = 0.05;

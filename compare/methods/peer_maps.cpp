@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include "agricolmap/refine/vertical.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/refine/vertical.hpp"
 
 namespace agricolmap::compare {
 namespace {
@@ -19,11 +19,12 @@ map::GridMap fixedAround(const PeerMaps& maps, double rim) {
   const GridFrame& frame = maps.moving.frame;
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(rim);
   const Eigen::Vector2d size = frame.cell * Eigen::Vector2d(frame.cols, frame.rows);
-  return map::croppedMap(maps.fixed, map::Box2(frame.corner - margin, frame.corner + size + margin));
+  return map::croppedMap(maps.fixed,
+                         map::Box2(frame.corner - margin, frame.corner + size + margin));
 }
 
 std::vector<map::VegetationPoint> pointsOf(const map::GridMap& map, std::size_t most,
-                                      std::string_view which) {
+                                           std::string_view which) {
   const map::Vegetation vegetation = map::extractVegetation(map, {});
   if (vegetation.points.size() < kLeastPoints) {
     throw InputError(
@@ -43,20 +44,23 @@ PeerMaps makePeerMaps(const MethodInput& input, StageTimes& times) {
   }
   const pipeline::RegistrationOptions paper = pipeline::preset("paper");
   PeerMaps maps;
-  const Eigen::Affine3d guess = pipeline::centredGuess(input.fixed, input.moving, input.guess, input.prior);
+  const Eigen::Affine3d guess =
+      pipeline::centredGuess(input.fixed, input.moving, input.guess, input.prior);
   times.run("level", [&] {
     pipeline::levelFixed(input.fixed, paper.level, maps.frames);
     pipeline::levelMoving(input.fixed, input.moving, guess, paper.level, maps.frames);
   });
   times.run("grid", [&] {
-    const map::Box2 fixed = boundsOf(input.fixed, maps.frames.levelled_from_fixed);
-    const map::Box2 moving = boundsOf(input.moving, maps.frames.levelled_from_moving);
+    const map::Box2 fixed = pipeline::boundsOf(input.fixed, maps.frames.levelled_from_fixed);
+    const map::Box2 moving = pipeline::boundsOf(input.moving, maps.frames.levelled_from_moving);
     pipeline::requirePlausibleExtents(input.fixed, input.moving, fixed, moving);
     maps.space = pipeline::searchSpace(moving, maps.frames, input.prior);
-    const map::Box2 window = pipeline::reachableWindow(moving, maps.space, 2.0 * paper.signal.high_pass);
+    const map::Box2 window =
+        pipeline::reachableWindow(moving, maps.space, 2.0 * paper.signal.high_pass);
     maps.fixed = map::makeGridMap(input.fixed, maps.frames.levelled_from_fixed,
-                             window.intersection(fixed), paper.grid);
-    maps.moving = map::makeGridMap(input.moving, maps.frames.levelled_from_moving, moving, paper.grid);
+                                  window.intersection(fixed), paper.grid);
+    maps.moving =
+        map::makeGridMap(input.moving, maps.frames.levelled_from_moving, moving, paper.grid);
   });
   return maps;
 }
@@ -73,8 +77,9 @@ PeerPoints makePeerPoints(const PeerMaps& maps, double rim, std::size_t most_fix
 
 void setPlanePose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine2d& pose,
                   MethodOutcome& outcome) {
-  const refine::VerticalResult vertical = outcome.times.run(
-      "vertical", [&] { return refine::fitVertical(maps.fixed, maps.moving, pose, refine::VerticalOptions{}); });
+  const refine::VerticalResult vertical = outcome.times.run("vertical", [&] {
+    return refine::fitVertical(maps.fixed, maps.moving, pose, refine::VerticalOptions{});
+  });
   if (vertical.status != refine::VerticalStatus::kOk) {
     outcome.accepted = false;
     outcome.why = "the heights of the two maps do not fit one another";
@@ -91,7 +96,7 @@ void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen
 }
 
 MatchSet matchSet(const pipeline::PairFrames& frames, const MethodInput& input,
-                  const std::vector<locate::Match>& matches, std::size_t inliers) {
+                  const std::vector<Match>& matches, std::size_t inliers) {
   const Eigen::Affine3d fixed_file =
       Eigen::Translation3d(input.fixed.origin) * frames.levelled_from_fixed.inverse();
   const Eigen::Affine3d moving_file =
@@ -100,7 +105,7 @@ MatchSet matchSet(const pipeline::PairFrames& frames, const MethodInput& input,
   MatchSet set;
   set.inliers = inliers;
   set.pairs.reserve(matches.size());
-  for (const locate::Match& match : matches) {
+  for (const Match& match : matches) {
     set.pairs.push_back({moving_file * lifted(match.moving), fixed_file * lifted(match.fixed)});
   }
   return set;

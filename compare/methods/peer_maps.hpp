@@ -16,7 +16,7 @@ namespace agricolmap::compare {
 /// works in the plane would else lose by a tilt that the ground says for nothing.
 struct PeerMaps {
   pipeline::PairFrames frames;
-  locate::SearchSpace space;
+  SearchSpace space;
   map::GridMap fixed;   ///< what the moving map can reach, levelled fixed frame
   map::GridMap moving;  ///< levelled moving frame: the guess is applied
 };
@@ -47,6 +47,6 @@ void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen
 
 /// Matches in the levelled frames, in file coordinates.
 MatchSet matchSet(const pipeline::PairFrames& frames, const MethodInput& input,
-                  const std::vector<locate::Match>& matches, std::size_t inliers);
+                  const std::vector<Match>& matches, std::size_t inliers);
 
 }  // namespace agricolmap::compare

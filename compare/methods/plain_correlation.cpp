@@ -27,7 +27,7 @@ PlainCorrelation::PlainCorrelation(const map::SignalMap& fixed, int most_rows, i
 }
 
 correlation::ComplexRaster PlainCorrelation::spectrumOf(const Raster<float>& values, int first_row,
-                                           int first_col) const {
+                                                        int first_col) const {
   const int rows = fft_.rows();
   const int width = values.cols();
   correlation::ComplexRaster strip(static_cast<std::size_t>(rows) * width);
@@ -52,7 +52,8 @@ PlainCorrelation::Peak PlainCorrelation::best(const Piece& piece, const Eigen::V
   }
   Peak peak;
   if (!(energy > 0.0)) return peak;
-  const correlation::ComplexRaster signal = spectrumOf(piece.value, piece.first_row, piece.first_col);
+  const correlation::ComplexRaster signal =
+      spectrumOf(piece.value, piece.first_row, piece.first_col);
   const correlation::ComplexRaster mask = spectrumOf(piece.seen, piece.first_row, piece.first_col);
   // Both correlations are real: as real and imaginary part of one raster they share an inverse.
   correlation::ComplexRaster both(fft_.size());

@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/correlation/fft.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::compare {
 
@@ -33,7 +33,8 @@ class PlainCorrelation {
   int mostCols() const { return most_cols_; }
 
  private:
-  correlation::ComplexRaster spectrumOf(const Raster<float>& values, int first_row, int first_col) const;
+  correlation::ComplexRaster spectrumOf(const Raster<float>& values, int first_row,
+                                        int first_col) const;
 
   GridFrame frame_;
   int most_rows_;
@@ -41,7 +42,7 @@ class PlainCorrelation {
   correlation::Fft2 fft_;
   correlation::ComplexRaster fixed_;    ///< spectrum of the signal
   correlation::ComplexRaster squared_;  ///< and of its square
-  double floor_;           ///< least energy per cell
+  double floor_;                        ///< least energy per cell
 };
 
 }  // namespace agricolmap::compare

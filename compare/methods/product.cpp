@@ -57,7 +57,8 @@ class Product : public Method {
 
 }  // namespace
 
-void fillFrom(const pipeline::Registration& result, const MethodInput& input, MethodOutcome& outcome) {
+void fillFrom(const pipeline::Registration& result, const MethodInput& input,
+              MethodOutcome& outcome) {
   outcome.accepted = result.verdict.status == verdict::Status::kAccepted;
   if (!outcome.accepted) outcome.why = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
   if (result.has_transform) outcome.fixed_from_moving = result.fixed_from_moving;

@@ -17,6 +17,7 @@ std::vector<std::string> productNames();
 std::unique_ptr<Method> makeProduct(const std::string& name);
 
 /// Fills `outcome` from what the pipeline found; `accepted` is its verdict.
-void fillFrom(const pipeline::Registration& result, const MethodInput& input, MethodOutcome& outcome);
+void fillFrom(const pipeline::Registration& result, const MethodInput& input,
+              MethodOutcome& outcome);
 
 }  // namespace agricolmap::compare

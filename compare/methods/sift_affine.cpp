@@ -19,18 +19,18 @@ struct RobustFit {
 };
 
 /// By USAC; about the middle of the matches, in cells, so that floats lose nothing.
-std::optional<RobustFit> fitRobustly(const std::vector<locate::Match>& matches, double cell,
+std::optional<RobustFit> fitRobustly(const std::vector<Match>& matches, double cell,
                                      const SiftAffineOptions& options) {
   if (matches.size() < 3) return std::nullopt;
   Eigen::Vector2d from = Eigen::Vector2d::Zero();
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
-  for (const locate::Match& match : matches) {
+  for (const Match& match : matches) {
     from += match.moving / static_cast<double>(matches.size());
     to += match.fixed / static_cast<double>(matches.size());
   }
   std::vector<cv::Point2d> sources;
   std::vector<cv::Point2d> targets;
-  for (const locate::Match& match : matches) {
+  for (const Match& match : matches) {
     const Eigen::Vector2d p = (match.moving - from) / cell;
     const Eigen::Vector2d q = (match.fixed - to) / cell;
     sources.emplace_back(p.x(), p.y());
@@ -67,7 +67,7 @@ class SiftAffine : public Method {
       fixed = extractor_->extract(exgImage(maps.fixed));
       moving = extractor_->extract(exgImage(maps.moving));
     });
-    const std::vector<locate::Match> matches = outcome.times.run("match", [&] {
+    const std::vector<Match> matches = outcome.times.run("match", [&] {
       return matchFeatures(fixed, maps.fixed.frame, moving, maps.moving.frame, maps.space,
                            {.ratio = options_.ratio});
     });

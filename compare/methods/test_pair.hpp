@@ -46,18 +46,20 @@ inline Eigen::Affine3d guessOff(const simulate::SimulatedPair& pair, const Guess
 }
 
 inline MethodInput inputOf(const simulate::SimulatedPair& pair, const GuessError& error,
-                           const locate::PriorUncertainty& prior) {
+                           const PriorUncertainty& prior) {
   return {.fixed = pair.uav, .moving = pair.ugv, .guess = guessOff(pair, error), .prior = prior};
 }
 
 /// Errors of an outcome that has a transform.
-inline evaluate::RegistrationErrors errorsOf(const MethodOutcome& outcome, const simulate::SimulatedPair& pair) {
-  return evaluate::evaluateTransform(*outcome.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
+inline evaluate::RegistrationErrors errorsOf(const MethodOutcome& outcome,
+                                             const simulate::SimulatedPair& pair) {
+  return evaluate::evaluateTransform(*outcome.fixed_from_moving, {pair.best_affine, pair.truth},
+                                     pair.ugv);
 }
 
 /// Runs the method on the small pair and expects it within the paper's limits.
 inline void expectRight(const Method& method, const GuessError& error,
-                        const locate::PriorUncertainty& prior) {
+                        const PriorUncertainty& prior) {
   const MethodOutcome outcome = method.run(inputOf(smallPair(), error, prior));
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << method.name() << ": " << outcome.why;
   const evaluate::RegistrationErrors errors = errorsOf(outcome, smallPair());

@@ -116,13 +116,13 @@ std::string toHtml(const Document& document) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{}</title>\n{}</head>\n<body>\n<h1>{}</h1>\n<p class=\"soft\">{}</p>\n",
       escapeXml(document.title), kCss, escapeXml(document.title), escapeXml(document.subtitle));
-  for (const map::Block& block : document.blocks) html += std::visit(HtmlBlock{}, block);
+  for (const Block& block : document.blocks) html += std::visit(HtmlBlock{}, block);
   return html + "</body>\n</html>\n";
 }
 
 std::string toMarkdown(const Document& document, const std::string& images) {
   std::string text = fmt::format("# {}\n\n{}\n\n", document.title, document.subtitle);
-  for (const map::Block& block : document.blocks) text += std::visit(MarkdownBlock{images}, block);
+  for (const Block& block : document.blocks) text += std::visit(MarkdownBlock{images}, block);
   text.pop_back();
   return text;
 }

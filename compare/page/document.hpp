@@ -34,12 +34,12 @@ struct Figure {
   std::string svg;
 };
 
-using map::Block = std::variant<Heading, Paragraph, Table, Figure>;
+using Block = std::variant<Heading, Paragraph, Table, Figure>;
 
 struct Document {
   std::string title;
   std::string subtitle;
-  std::vector<map::Block> blocks;
+  std::vector<Block> blocks;
 };
 
 /// One file that needs nothing else: no scripts, no fonts, no pictures from elsewhere.

@@ -170,7 +170,7 @@ TEST(ComparePage, IsOneFileThatNeedsNothingElse) {
   for (const char* outside : {"<script", "src=", "href=", "@import", "url("}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
-  const std::string markdown = config::toMarkdown(comparisonDocument(rows, "version 1"), "images");
+  const std::string markdown = toMarkdown(comparisonDocument(rows, "version 1"), "images");
   EXPECT_THAT(markdown, HasSubstr("(images/success_translation_simulated_points.svg)"));
 }
 

@@ -26,7 +26,7 @@ struct Chain {
   std::string method;
 };
 
-Row rowFor(const DataSet& data, const simulate::Cell& cell, int seed, const std::string& method) {
+Row rowFor(const DataSet& data, const Cell& cell, int seed, const std::string& method) {
   Row row;
   row.dataset = data.name;
   row.kind = toString(data.kind);
@@ -67,7 +67,7 @@ class Batch {
  private:
   std::size_t left(const Curve& curve, const std::string& method) const {
     return static_cast<std::size_t>(
-        std::count_if(curve.cells.begin(), curve.cells.end(), [&](const simulate::Cell& cell) {
+        std::count_if(curve.cells.begin(), curve.cells.end(), [&](const Cell& cell) {
           return table_->find(rowFor(*data_, cell, seed_, method).key()) == nullptr;
         }));
   }
@@ -97,7 +97,7 @@ class Batch {
       if (row.method == chain.method && other) known.push_back(row);
     }
     for (std::size_t i = 0; i < chain.curve->cells.size(); ++i) {
-      const simulate::Cell& cell = chain.curve->cells[i];
+      const Cell& cell = chain.curve->cells[i];
       Row row = rowFor(*data_, cell, seed_, chain.method);
       const auto done = doneRow(row.key());
       if (done) {
@@ -166,7 +166,7 @@ class ScratchFolder {
 
 bool isSlow(const std::string& method) { return method.starts_with("go-icp"); }
 
-bool cannotBeRight(const std::string& method, const simulate::Cell& cell) {
+bool cannotBeRight(const std::string& method, const Cell& cell) {
   const bool rigid = method == "go-icp" || method == "fpfh-gicp";
   return rigid && cell.scale > evaluate::SuccessLimits{}.scale;
 }
@@ -176,7 +176,7 @@ bool hopeless(const std::vector<Row>& rows, const Curve& curve, std::size_t next
   if (next < kLostSettings) return false;
   std::size_t runs = 0;
   for (std::size_t i = next - kLostSettings; i < next; ++i) {
-    const simulate::Cell& cell = curve.cells[i];
+    const Cell& cell = curve.cells[i];
     bool own = false;
     for (const Row& row : rows) {
       if (row.method != method || row.kind != kind || row.experiment != cell.experiment ||

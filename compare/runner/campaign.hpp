@@ -29,7 +29,7 @@ bool isSlow(const std::string& method);
 
 /// Whether the method, a rigid one, leaves the whole scale error of the setting, and that alone is
 /// too much: such a run is not made, and counts as a failure.
-bool cannotBeRight(const std::string& method, const simulate::Cell& cell);
+bool cannotBeRight(const std::string& method, const Cell& cell);
 
 /// Whether setting number `next` of the curve is past hope: the method failed on all pairs of the
 /// data set at the three settings before it, and on all pairs of data sets of its kind there, six

@@ -84,7 +84,7 @@ std::uint64_t hashText(const std::string& text) {
   return hash;
 }
 
-std::string simulate::Cell::priorText() const {
+std::string Cell::priorText() const {
   // Rounded up to a tenth: the error lies within what the method is told.
   const auto upTo = [](double value) { return std::ceil(10.0 * value - 1e-9) / 10.0; };
   return fmt::format("{:.4g},{:.4g},{:.4g}", std::max(5.0, upTo(translation)),
@@ -111,7 +111,7 @@ bool takesPart(const std::string& method, const std::string& experiment) {
          method == "fast-brief" || method == "sift-affine";
 }
 
-Eigen::Affine3d scaleError(const simulate::Cell& cell, int seed, const Cloud& moving) {
+Eigen::Affine3d scaleError(const Cell& cell, int seed, const Cloud& moving) {
   Random random = Random::stream(static_cast<std::uint64_t>(seed),
                                  hashText(fmt::format("scale {:.4g}", cell.scale)));
   const double x = 1.0 + cell.scale * randomSign(random);
@@ -120,7 +120,7 @@ Eigen::Affine3d scaleError(const simulate::Cell& cell, int seed, const Cloud& mo
   return Eigen::Translation3d(middle) * Eigen::Scaling(x, y, 1.0) * Eigen::Translation3d(-middle);
 }
 
-Eigen::Affine3d wrongGuess(const simulate::Cell& cell, int seed, const Cloud& moving,
+Eigen::Affine3d wrongGuess(const Cell& cell, int seed, const Cloud& moving,
                            const Eigen::Affine3d& exact) {
   Random random = Random::stream(static_cast<std::uint64_t>(seed),
                                  hashText(fmt::format("{} {:.4g}", cell.experiment, cell.setting)));

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
+#include "agricolmap/locate/association.hpp"
 
 namespace agricolmap::compare {
 
 /// One setting of an experiment. What is wrong with the guess has these sizes exactly; directions
 /// and signs are drawn.
-struct simulate::Cell {
+struct Cell {
   std::string experiment;
   double setting = 0.0;      ///< what the experiment varies, in its own unit
   double translation = 0.0;  ///< [m], horizontal
@@ -29,7 +29,7 @@ struct Curve {
   std::string experiment;
   double scale = 0.0;  ///< of all its cells; 0 where the scale itself rises
   bool rising = true;  ///< false: cells that have no order
-  std::vector<simulate::Cell> cells;
+  std::vector<Cell> cells;
 };
 
 /// translation, heading, joint, accuracy, inliers.
@@ -45,11 +45,11 @@ std::uint64_t hashText(const std::string& text);
 /// The moving cloud with its scale error, as a matrix: undisturbed file → disturbed file, about the
 /// cloud's middle. The signs depend on the seed and the size alone, so that all cells of that size
 /// share a file.
-Eigen::Affine3d scaleError(const simulate::Cell& cell, int seed, const Cloud& moving);
+Eigen::Affine3d scaleError(const Cell& cell, int seed, const Cloud& moving);
 /// The exact guess made wrong by the cell's translation (in a random direction) and heading (of
 /// random sign), about the moving cloud's middle. They depend on the seed, the experiment and the
 /// setting.
-Eigen::Affine3d wrongGuess(const simulate::Cell& cell, int seed, const Cloud& moving,
+Eigen::Affine3d wrongGuess(const Cell& cell, int seed, const Cloud& moving,
                            const Eigen::Affine3d& exact);
 /// Moves the points of a cloud within its file's coordinates.
 void transformCloud(Cloud& cloud, const Eigen::Affine3d& moved_from_file);

@@ -13,7 +13,7 @@ Progress::Progress(const CampaignOptions& options, const RowTable& table)
   for (const Row& row : table.rows()) add(row);
   for (const DataSet& data : options.datasets) {
     for (const Curve& curve : options.curves) {
-      for (const simulate::Cell& cell : curve.cells) {
+      for (const Cell& cell : curve.cells) {
         for (const std::string& method : options.methods) {
           if (!takesPart(method, cell.experiment)) continue;
           for (int i = 0; i < options.pairs; ++i) {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "agricolmap/io/cloud/cloud_writer.hpp"
-#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/test_support.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "runner/experiments.hpp"
 #include "runner/pair_provider.hpp"
 
@@ -47,7 +47,9 @@ class PublishedFolder : public test::TempDir {
     fs::create_directories(path() / crop_ / folder);
     io::writePly(path() / crop_ / folder / "point_cloud.ply", cloud);
   }
-  void truth(int row, const Eigen::Affine3d& affine) const { io::writeMatrix(truthFile(row), affine); }
+  void truth(int row, const Eigen::Affine3d& affine) const {
+    io::writeMatrix(truthFile(row), affine);
+  }
   fs::path truthFile(int row) const {
     return path() / crop_ / fmt::format("ugv_row{}", row) / "ground_truth.txt";
   }
@@ -83,7 +85,7 @@ TEST(PublishedSets, SeedsVaryTheGuessOnTheSameClouds) {
   const campaign::CampaignPair two = provider.make(sets[0], 2);
   EXPECT_EQ(one.fixed, two.fixed) << "read once";
   EXPECT_EQ(one.moving.xyz, two.moving.xyz);
-  const simulate::Cell cell{"translation", 5.0, 5.0, 0.0, 0.0};
+  const Cell cell{"translation", 5.0, 5.0, 0.0, 0.0};
   const Eigen::Affine3d first = wrongGuess(cell, 1, one.moving, one.prior);
   const Eigen::Affine3d second = wrongGuess(cell, 2, two.moving, two.prior);
   EXPECT_NEAR((first.translation() - one.prior.translation()).norm(), 5.0, 1e-6);

@@ -17,12 +17,13 @@ constexpr std::string_view kHeader =
     "matches,right,coherent,rematches,rematches_right,rematches_coherent,stages,note";
 constexpr std::size_t kColumns = 29;
 
-constexpr double evaluate::RegistrationErrors::*kErrors[] = {&evaluate::RegistrationErrors::rms,
-                                                   &evaluate::RegistrationErrors::rms_horizontal,
-                                                   &evaluate::RegistrationErrors::rms_to_best_affine,
-                                                   &evaluate::RegistrationErrors::translation,
-                                                   &evaluate::RegistrationErrors::rotation,
-                                                   &evaluate::RegistrationErrors::scale};
+constexpr double evaluate::RegistrationErrors::*kErrors[] = {
+    &evaluate::RegistrationErrors::rms,
+    &evaluate::RegistrationErrors::rms_horizontal,
+    &evaluate::RegistrationErrors::rms_to_best_affine,
+    &evaluate::RegistrationErrors::translation,
+    &evaluate::RegistrationErrors::rotation,
+    &evaluate::RegistrationErrors::scale};
 constexpr double Row::*kNumbers[] = {&Row::wall_s, &Row::run_s, &Row::cpu_s, &Row::peak_mib,
                                      &Row::idle_mib};
 constexpr MatchCounts Row::*kMatchings[] = {&Row::first, &Row::last};

@@ -63,8 +63,8 @@ void fillFromJson(const nlohmann::json& json, const PairFiles::Moving& moving, R
     counts->right = json[name].at("right").get<double>();
   }
   if (json.at("fixed_from_moving").is_null()) return;
-  row.errors =
-      evaluate::evaluateTransform(matrixOf(json.at("fixed_from_moving")), moving.truth, moving.cloud);
+  row.errors = evaluate::evaluateTransform(matrixOf(json.at("fixed_from_moving")), moving.truth,
+                                           moving.cloud);
   row.correct = row.errors.within({});
 }
 
@@ -75,7 +75,7 @@ PairFiles::PairFiles(std::filesystem::path folder, campaign::CampaignPair pair, 
   io::writePly(fixedFile(), *pair_.fixed);
 }
 
-const PairFiles::Moving& PairFiles::moving(const simulate::Cell& cell) {
+const PairFiles::Moving& PairFiles::moving(const Cell& cell) {
   const std::lock_guard lock(mutex_);
   const std::string key = fmt::format("{:.4g}", cell.scale);
   const auto known = moving_.find(key);
@@ -90,13 +90,13 @@ const PairFiles::Moving& PairFiles::moving(const simulate::Cell& cell) {
   return moving_.emplace(key, std::move(made)).first->second;
 }
 
-Eigen::Affine3d PairFiles::guess(const simulate::Cell& cell) {
+Eigen::Affine3d PairFiles::guess(const Cell& cell) {
   // The guess takes the file's lengths at face value; the middle is where it was.
   return wrongGuess(cell, seed_, pair_.moving, pair_.prior);
 }
 
-void runMethod(const MethodCall& call, PairFiles& files, const simulate::Cell& cell, const std::string& name,
-               Row& row) {
+void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell,
+               const std::string& name, Row& row) {
   const PairFiles::Moving& moving = files.moving(cell);
   const std::filesystem::path guess = files.folder() / (name + ".guess.txt");
   const std::filesystem::path result = files.folder() / (name + ".json");

@@ -26,9 +26,9 @@ class PairFiles {
     evaluate::Truth truth;
   };
   /// The cell's; written when first asked for. Any thread.
-  const Moving& moving(const simulate::Cell& cell);
+  const Moving& moving(const Cell& cell);
   /// The cell's guess for the moving cloud of its size. Any thread.
-  Eigen::Affine3d guess(const simulate::Cell& cell);
+  Eigen::Affine3d guess(const Cell& cell);
   std::filesystem::path fixedFile() const { return folder_ / "fixed.ply"; }
   const std::filesystem::path& folder() const { return folder_; }
 
@@ -51,7 +51,7 @@ inline constexpr double kRightMatch = 0.04;
 
 /// Fills in everything of the row but what it is about (data set, experiment, seed, method).
 /// `name`: of the run's own files in the pair's folder.
-void runMethod(const MethodCall& call, PairFiles& files, const simulate::Cell& cell, const std::string& name,
-               Row& row);
+void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell,
+               const std::string& name, Row& row);
 
 }  // namespace agricolmap::compare

@@ -44,7 +44,7 @@ Row lostRow(const std::string& dataset, double setting, int seed, bool right = f
 
 TEST_F(RunnerTest, GuessIsWrongByExactlyTheSettingAtTheMiddle) {
   const Cloud cloud = squareCloud();
-  const simulate::Cell cell{"joint", 1.0, 5.0, 0.2, 0.3};
+  const Cell cell{"joint", 1.0, 5.0, 0.2, 0.3};
   const Eigen::Affine3d exact(Eigen::Translation3d(10.0, -20.0, 1.0));
   const Eigen::Affine3d guess = wrongGuess(cell, 7, cloud, exact);
   const Eigen::Vector3d middle = cloud.origin + Eigen::Vector3d(2.0, 1.0, 0.05);
@@ -57,7 +57,7 @@ TEST_F(RunnerTest, GuessIsWrongByExactlyTheSettingAtTheMiddle) {
 
 TEST_F(RunnerTest, ScaleErrorKeepsTheMiddleAndFarCoordinates) {
   Cloud cloud = squareCloud();
-  const simulate::Cell cell{"accuracy", 0.3, 0.05, 0.01, 0.3};
+  const Cell cell{"accuracy", 0.3, 0.05, 0.01, 0.3};
   const Eigen::Affine3d scaled = scaleError(cell, 3, cloud);
   const Eigen::Vector3d middle = cloud.origin + Eigen::Vector3d(2.0, 1.0, 0.05);
   EXPECT_NEAR((scaled * middle - middle).norm(), 0.0, 1e-6);
@@ -69,9 +69,9 @@ TEST_F(RunnerTest, ScaleErrorKeepsTheMiddleAndFarCoordinates) {
 }
 
 TEST_F(RunnerTest, PriorIsThePapersOrWider) {
-  EXPECT_EQ((simulate::Cell{"translation", 5.0, 5.0, 0.0, 0.3}.priorText()), "5,11.5,30");
-  EXPECT_EQ((simulate::Cell{"translation", 10.0, 10.0, 0.0, 0.0}.priorText()), "10,11.5,30");
-  EXPECT_EQ((simulate::Cell{"heading", 0.4, 0.0, 0.4, 0.0}.priorText()), "5,23,30");
+  EXPECT_EQ((Cell{"translation", 5.0, 5.0, 0.0, 0.3}.priorText()), "5,11.5,30");
+  EXPECT_EQ((Cell{"translation", 10.0, 10.0, 0.0, 0.0}.priorText()), "10,11.5,30");
+  EXPECT_EQ((Cell{"heading", 0.4, 0.0, 0.4, 0.0}.priorText()), "5,23,30");
 }
 
 TEST_F(RunnerTest, UnknownNamesListTheKnownOnes) {

@@ -26,7 +26,7 @@ class Brief {
   std::array<std::uint8_t, kBytes> describe(const Raster<std::uint8_t>& smooth, int row,
                                             int col) const;
   /// The picture under the Gaussian.
-  Raster<std::uint8_t> paper::smoothed(const Raster<std::uint8_t>& picture) const;
+  Raster<std::uint8_t> smoothed(const Raster<std::uint8_t>& picture) const;
 
  private:
   struct Test {

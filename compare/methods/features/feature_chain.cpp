@@ -19,8 +19,8 @@ class FeatureChain : public Method {
     pipeline::RegistrationOptions options = pipeline::preset("paper");
     options.prior = input.prior;
     const FeatureAssociation association(*extractor_, {}, options.flow.vote);
-    const pipeline::Registration result = pipeline::registerClouds(input.fixed, input.moving, input.guess, options,
-                                               outcome.times, &association);
+    const pipeline::Registration result = pipeline::registerClouds(
+        input.fixed, input.moving, input.guess, options, outcome.times, &association);
     fillFrom(result, input, outcome);
   }
 
@@ -31,8 +31,10 @@ class FeatureChain : public Method {
 
 }  // namespace
 
-locate::AssociationResult FeatureAssociation::associate(const map::GridMap& fixed, const map::GridMap& moving,
-                                                const locate::SearchSpace& space, StageTimes& times) const {
+locate::AssociationResult FeatureAssociation::associate(const map::GridMap& fixed,
+                                                        const map::GridMap& moving,
+                                                        const SearchSpace& space,
+                                                        StageTimes& times) const {
   Features fixed_features;
   Features moving_features;
   times.run("detect", [&] {
@@ -44,10 +46,11 @@ locate::AssociationResult FeatureAssociation::associate(const map::GridMap& fixe
     return matchFeatures(fixed_features, fixed.frame, moving_features, moving.frame, space,
                          matching_);
   });
-  const std::vector<paper::VotedPlacement> voted = times.run(
-      "vote", [&] { return paper::voteCoherent(result.all_matches, space, moving.frame.cell, vote_); });
+  const std::vector<paper::VotedPlacement> voted = times.run("vote", [&] {
+    return paper::voteCoherent(result.all_matches, space, moving.frame.cell, vote_);
+  });
   for (const paper::VotedPlacement& one : voted) {
-    locate::Placement placement;
+    Placement placement;
     placement.score = static_cast<double>(one.inliers.size());
     for (const std::uint32_t i : one.inliers) placement.matches.push_back(result.all_matches[i]);
     result.placements.push_back(std::move(placement));

@@ -18,8 +18,8 @@ class FeatureAssociation : public locate::Association {
   explicit FeatureAssociation(const FeatureExtractor& extractor, const MatchOptions& matching = {},
                               const paper::VoteOptions& vote = {})
       : extractor_(extractor), matching_(matching), vote_(vote) {}
-  locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
-                              StageTimes& times) const override;
+  locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving,
+                                      const SearchSpace& space, StageTimes& times) const override;
 
  private:
   const FeatureExtractor& extractor_;

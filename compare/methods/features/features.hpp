@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/map/grid_map.hpp"
-#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/raster.hpp"
+#include "agricolmap/locate/association.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::compare {
 
@@ -53,8 +53,8 @@ struct MatchOptions {
 
 /// Pairs of features that are each other's nearest among those that the guess allows; levelled
 /// frames [m].
-std::vector<locate::Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
+std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
                                  const Features& moving, const GridFrame& moving_frame,
-                                 const locate::SearchSpace& space, const MatchOptions& options);
+                                 const SearchSpace& space, const MatchOptions& options);
 
 }  // namespace agricolmap::compare

@@ -21,7 +21,7 @@ struct Views {
   map::GridMap fixed;
   map::GridMap moving;
   Eigen::Vector2d shift{0.42, -0.26};
-  locate::SearchSpace space;
+  SearchSpace space;
 };
 
 Views makeViews() {
@@ -40,9 +40,9 @@ Views makeViews() {
   return views;
 }
 
-double rightShare(const std::vector<locate::Match>& matches, const Eigen::Vector2d& shift) {
+double rightShare(const std::vector<Match>& matches, const Eigen::Vector2d& shift) {
   double right = 0.0;
-  for (const locate::Match& match : matches) {
+  for (const Match& match : matches) {
     if ((match.fixed - match.moving - shift).norm() < 0.06) right += 1.0;
   }
   return matches.empty() ? 0.0 : right / static_cast<double>(matches.size());
@@ -70,7 +70,7 @@ TEST_P(Extractors, MatchWhatIsTheSame) {
   const Features fixed = extractor->extract(exgImage(views.fixed));
   const Features moving = extractor->extract(exgImage(views.moving));
   EXPECT_GT(moving.size(), 50U);
-  const std::vector<locate::Match> matches =
+  const std::vector<Match> matches =
       matchFeatures(fixed, views.fixed.frame, moving, views.moving.frame, views.space, {});
   EXPECT_GT(matches.size(), 40U) << extractor->name();
   EXPECT_GT(rightShare(matches, views.shift), 0.4) << extractor->name();
@@ -111,7 +111,7 @@ TEST(ExgImage, FillsHolesWithoutBorders) {
 TEST(FeatureChains, AreRightFromNearby) {
   testing::GuessError error;
   error.shift = {0.25, -0.2};
-  locate::PriorUncertainty prior;
+  PriorUncertainty prior;
   prior.translation = 1.0;
   prior.heading_deg = 3.0;
   prior.scale = 0.05;

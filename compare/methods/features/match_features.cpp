@@ -3,8 +3,8 @@
 #include <cstring>
 #include <limits>
 
-#include "agricolmap/paper/flow/reach.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/paper/flow/reach.hpp"
 #include "methods/features/features.hpp"
 
 namespace agricolmap::compare {
@@ -59,9 +59,9 @@ std::vector<Eigen::Vector2d> placesOf(const Features& features, const GridFrame&
 
 }  // namespace
 
-std::vector<locate::Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
+std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
                                  const Features& moving, const GridFrame& moving_frame,
-                                 const locate::SearchSpace& space, const MatchOptions& options) {
+                                 const SearchSpace& space, const MatchOptions& options) {
   const std::vector<Eigen::Vector2d> fixed_at = placesOf(fixed, fixed_frame);
   const std::vector<Eigen::Vector2d> moving_at = placesOf(moving, moving_frame);
   const paper::Reach reach(space);
@@ -85,7 +85,7 @@ std::vector<locate::Match> matchFeatures(const Features& fixed, const GridFrame&
         }
       },
       16);
-  std::vector<locate::Match> matches;
+  std::vector<Match> matches;
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const Nearest& best = forward[i];
     if (best.index == kNone || backward[best.index].index != i) continue;

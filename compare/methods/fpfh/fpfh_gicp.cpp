@@ -35,9 +35,10 @@ class FpfhGicp : public Method {
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const PeerMaps maps = makePeerMaps(input, outcome.times);
     const Eigen::Vector2d& middle = maps.space.centre;
-    const map::Box2 moving_box = boundsOf(input.moving, maps.frames.levelled_from_moving);
-    const PlainPoints fixed = pointsIn(input.fixed, maps.frames.levelled_from_fixed,
-                                       pipeline::reachableWindow(moving_box, maps.space, 1.0), middle);
+    const map::Box2 moving_box = pipeline::boundsOf(input.moving, maps.frames.levelled_from_moving);
+    const PlainPoints fixed =
+        pointsIn(input.fixed, maps.frames.levelled_from_fixed,
+                 pipeline::reachableWindow(moving_box, maps.space, 1.0), middle);
     const PlainPoints moving =
         pointsIn(input.moving, maps.frames.levelled_from_moving, moving_box, middle);
     const FpfhGicpResult result = registerByFpfhGicp(fixed, moving, parameters_);
@@ -51,7 +52,7 @@ class FpfhGicp : public Method {
         about.matrix()(r, c) = result.transform[static_cast<std::size_t>(4 * r + c)];
       }
     }
-    verdict::judge(about, maps.space.uncertainty, outcome);
+    judge(about, maps.space.uncertainty, outcome);
     const Eigen::Vector3d there(middle.x(), middle.y(), 0.0);
     setLevelledPose(maps, input, Eigen::Translation3d(there) * about * Eigen::Translation3d(-there),
                     outcome);
@@ -59,7 +60,7 @@ class FpfhGicp : public Method {
 
  private:
   /// Whether the motion about the strip's middle is one that the guess allows.
-  static void judge(const Eigen::Affine3d& about, const locate::PriorUncertainty& prior,
+  static void judge(const Eigen::Affine3d& about, const PriorUncertainty& prior,
                     MethodOutcome& outcome) {
     const double shift = about.translation().head<2>().norm();
     const double turn = Eigen::AngleAxisd(about.linear()).angle() * 180.0 / std::numbers::pi;

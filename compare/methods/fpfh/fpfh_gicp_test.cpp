@@ -8,8 +8,8 @@
 namespace agricolmap::compare {
 namespace {
 
-locate::PriorUncertainty nearPrior() {
-  locate::PriorUncertainty prior;
+PriorUncertainty nearPrior() {
+  PriorUncertainty prior;
   prior.translation = 0.5;
   prior.heading_deg = 2.0;
   prior.scale = 0.0;

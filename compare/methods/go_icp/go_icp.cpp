@@ -102,7 +102,7 @@ class GoIcp : public Method {
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const Stopwatch watch;
     const PeerMaps maps = makePeerMaps(input, outcome.times);
-    const locate::PriorUncertainty& prior = maps.space.uncertainty;
+    const PriorUncertainty& prior = maps.space.uncertainty;
     const PeerPoints vegetation = makePeerPoints(maps, prior.translation + 1.0, options_.most_fixed,
                                                  options_.most_polish, outcome.times);
     Points fixed = inSpace(vegetation.fixed);
@@ -142,7 +142,7 @@ class GoIcp : public Method {
 
  private:
   GoIcpResult search(const DistanceField& field, const NearestPoints& fixed, const Points& moving,
-                     const locate::PriorUncertainty& prior, double time_limit) const {
+                     const PriorUncertainty& prior, double time_limit) const {
     GoIcpSearch domain = options_.search;
     domain.half_rotation =
         std::max(1e-3, std::min(prior.heading_deg, 180.0) * std::numbers::pi / 180.0);

@@ -64,8 +64,8 @@ TEST(GoIcpSearcher, FindsAMotionFromFaraway) {
   EXPECT_NEAR(result.pose.rotation.z(), 0.13, 0.08);
 }
 
-locate::PriorUncertainty nearPrior() {
-  locate::PriorUncertainty prior;
+PriorUncertainty nearPrior() {
+  PriorUncertainty prior;
   prior.translation = 0.6;
   prior.heading_deg = 2.0;
   prior.scale = 0.0;

@@ -17,7 +17,7 @@ namespace {
 
 /// The whole of `text` as a number; nothing if it is something else.
 template <typename Number>
-std::optional<Number> io::parseNumber(std::string_view text) {
+std::optional<Number> parseNumber(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -43,7 +43,7 @@ std::optional<bool> parseFlag(std::string_view text) {
 
 template <typename Number>
 std::function<void()> setNumber(const OptionField& field, Number* target, std::string_view text) {
-  const std::optional<Number> value = io::parseNumber<Number>(text);
+  const std::optional<Number> value = parseNumber<Number>(text);
   const auto wide = value ? static_cast<double>(*value) : 0.0;
   if (!value || !std::isfinite(wide) || wide < field.low || wide > field.high) refuse(field, text);
   return [target, value = *value] { *target = value; };

@@ -8,11 +8,11 @@
 #include <limits>
 #include <optional>
 
+#include "agricolmap/control_points/control_points_fit.hpp"
+#include "agricolmap/control_points/control_points_robust.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/transform.hpp"
-#include "agricolmap/control_points/control_points_fit.hpp"
-#include "agricolmap/control_points/control_points_robust.hpp"
 
 namespace agricolmap::control_points {
 namespace {
@@ -245,7 +245,7 @@ ControlEstimate estimateFromPairs(std::span<const ControlPair> pairs, const Cont
   estimate.parts = splitLinear(local->linear());
   estimate.sigma_horizontal = sigmas.horizontal;
   estimate.sigma_vertical = sigmas.vertical;
-  verdict::judge(pairs, problem, *local, weights, options.tukey, estimate);
+  judge(pairs, problem, *local, weights, options.tukey, estimate);
   leaveOut(pairs, problem, weights, estimate);
   sumUp(pairs, estimate);
   warn(pairs, estimate);

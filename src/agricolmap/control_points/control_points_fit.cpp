@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/affine_fit.hpp"
+#include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap::control_points {
@@ -41,7 +41,7 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
 
 /// Rotation and horizontal scales as seen from above, which are those in space but for the tilt.
 std::optional<ScaledRotation> fromAbove(const PairPlaces& pairs, std::span<const double> weights) {
-  std::vector<locate::Match> matches;
+  std::vector<Match> matches;
   matches.reserve(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     matches.push_back({pairs.moving[i].head<2>(), pairs.fixed[i].head<2>()});

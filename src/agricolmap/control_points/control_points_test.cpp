@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "agricolmap/control_points/control_points_report.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/control_points/control_points_report.hpp"
 #include "agricolmap/io/test_support.hpp"
 
 namespace agricolmap::control_points {

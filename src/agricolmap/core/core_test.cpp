@@ -12,7 +12,7 @@
 namespace agricolmap {
 namespace {
 
-enum class report::Colour { kRed, kGreen };
+enum class Colour { kRed, kGreen };
 struct InnerOptions {
   double size = 2.0;
 };
@@ -20,7 +20,7 @@ struct OuterOptions {
   InnerOptions inner;
   int count = 3;
   bool on = false;
-  report::Colour colour = report::Colour::kGreen;
+  Colour colour = Colour::kGreen;
 };
 void describe(OptionTable& table, InnerOptions& o) {
   table.number("size", o.size, 0.0, 10.0, "m", "how large");
@@ -39,7 +39,7 @@ TEST(OptionTable, NamesNestedFields) {
   *std::get<double*>(table.find("inner.size")->value) = 4.0;
   EXPECT_EQ(options.inner.size, 4.0);
   std::get<ChoiceRef>(table.find("colour")->value).set(0);
-  EXPECT_EQ(options.colour, report::Colour::kRed);
+  EXPECT_EQ(options.colour, Colour::kRed);
 }
 
 TEST(OptionTable, RefusesValuesOutsideLimitsByName) {

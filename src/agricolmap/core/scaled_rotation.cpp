@@ -13,7 +13,7 @@ Eigen::Matrix2d orthonormalAxes(const Eigen::Matrix2d& axes) {
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-std::optional<ScaledRotation> fitScaledRotation(std::span<const locate::Match> matches,
+std::optional<ScaledRotation> fitScaledRotation(std::span<const Match> matches,
                                                 std::span<const double> weights,
                                                 const Eigen::Matrix2d& axes) {
   const Eigen::Matrix2d a = orthonormalAxes(axes);

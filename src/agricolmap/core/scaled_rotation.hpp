@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/placement.hpp"
 
 namespace agricolmap {
 
@@ -30,7 +30,7 @@ Eigen::Matrix2d orthonormalAxes(const Eigen::Matrix2d& axes);
 ///
 /// `weights` is empty (all 1) or one per match. Nothing when fewer than 3 matches have weight, when
 /// the points span no area, or when the best map mirrors.
-std::optional<ScaledRotation> fitScaledRotation(std::span<const locate::Match> matches,
+std::optional<ScaledRotation> fitScaledRotation(std::span<const Match> matches,
                                                 std::span<const double> weights,
                                                 const Eigen::Matrix2d& axes);
 

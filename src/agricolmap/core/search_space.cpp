@@ -1,12 +1,12 @@
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
 
 #include <cmath>
 
 namespace agricolmap {
 
-void describe(OptionTable& table, locate::PriorUncertainty& options) {
+void describe(OptionTable& table, PriorUncertainty& options) {
   table.number(
-      "translation", options.translation, 0.0, locate::kAnywhere, "m",
+      "translation", options.translation, 0.0, kAnywhere, "m",
       "how far off the initial guess may be, horizontally (paper: 5); 1e6: anywhere in the "
       "fixed map");
   table.number("heading_deg", options.heading_deg, 0.0, 180.0, "deg",
@@ -17,14 +17,14 @@ void describe(OptionTable& table, locate::PriorUncertainty& options) {
              "the moving file's unit is not known: an overall factor from 0.1 to 10 is found, too");
 }
 
-locate::PriorUncertainty locate::PriorUncertainty::none() {
-  locate::PriorUncertainty uncertainty;
-  uncertainty.translation = locate::kAnywhere;
+PriorUncertainty PriorUncertainty::none() {
+  PriorUncertainty uncertainty;
+  uncertainty.translation = kAnywhere;
   uncertainty.heading_deg = 180.0;
   return uncertainty;
 }
 
-double logScaleLimit(const locate::PriorUncertainty& uncertainty) {
+double logScaleLimit(const PriorUncertainty& uncertainty) {
   return -std::log(1.0 - uncertainty.scale);
 }
 

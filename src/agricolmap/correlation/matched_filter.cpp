@@ -14,7 +14,8 @@ void describe(OptionTable& table, MatchedFilterOptions& options) {
                "weight of the height channel beside the greenness");
 }
 
-MatchedFilter::MatchedFilter(const map::SignalMap& fixed, const MatchedFilterOptions& options, int rim)
+MatchedFilter::MatchedFilter(const map::SignalMap& fixed, const MatchedFilterOptions& options,
+                             int rim)
     : frame_(fixed.frame),
       options_(options),
       rim_(rim),

@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
-#include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/correlation/fft.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::correlation {
 

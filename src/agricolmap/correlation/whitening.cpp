@@ -12,7 +12,7 @@ constexpr double kEnough = 1e-3;
 
 /// The power of each frequency, averaged over 3 × 3 of them: one map is one sample of its field's
 /// spectrum. `raw` is stored rows × cols.
-std::vector<float> paper::smoothed(const std::vector<float>& raw, int rows, int cols) {
+std::vector<float> smoothed(const std::vector<float>& raw, int rows, int cols) {
   std::vector<float> power(raw.size());
   std::vector<float> across(raw.size());
   for (int r = 0; r < rows; ++r) {
@@ -112,8 +112,8 @@ Gains gainsOf(const ComplexRaster& spectrum, const Fft2& fft, double floor) {
       power.height[k] = hr * hr + hi * hi;
     }
   }
-  return {gainsOf(paper::smoothed(power.greenness, cols, rows), floor),
-          gainsOf(paper::smoothed(power.height, cols, rows), floor)};
+  return {gainsOf(smoothed(power.greenness, cols, rows), floor),
+          gainsOf(smoothed(power.height, cols, rows), floor)};
 }
 
 double dot(const ComplexRaster& a, const ComplexRaster& b) {

@@ -2,8 +2,8 @@
 // spectrum is high in.
 #pragma once
 
-#include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/correlation/fft.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::correlation {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "agricolmap/correlation/matched_filter.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/correlation/matched_filter.hpp"
 
 namespace agricolmap::correlation {
 namespace {

@@ -117,9 +117,10 @@ BlockSearch::BlockSearch(const map::SignalMap& moving, const correlation::Matche
 std::vector<BlockSearch::Surface> BlockSearch::correlate(const Eigen::Matrix2d& linear) const {
   const GridFrame& frame = filter_.frame();
   const auto templateOf = [&](const map::Block& block) {
-    return correlation::makeTemplate(moving_, block.centre, linear, boundsOf(block, strip_), frame.cell,
-                        filter_.options().height_weight,
-                        [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
+    return correlation::makeTemplate(
+        moving_, block.centre, linear, boundsOf(block, strip_), frame.cell,
+        filter_.options().height_weight,
+        [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
   };
   correlation::MatchedFilter::Work work(filter_);
   correlation::ComplexRaster both(filter_.fft().size());

@@ -10,8 +10,8 @@
 
 #include <vector>
 
-#include "agricolmap/locate/candidates.hpp"
 #include "agricolmap/correlation/matched_filter.hpp"
+#include "agricolmap/locate/candidates.hpp"
 
 namespace agricolmap::locate {
 
@@ -20,8 +20,9 @@ class BlockSearch {
   /// `blocks`: those of the strip that take part. `peaks`: places per
   /// coarse hypothesis at which the finer ones are looked at. `min_inside`: least share of the
   /// blocks that lie in the map. All references must outlive this.
-  BlockSearch(const map::SignalMap& moving, const correlation::MatchedFilter& filter, const SearchSpace& space,
-              const map::StripFrame& strip, std::vector<map::Block> blocks, int peaks, double min_inside);
+  BlockSearch(const map::SignalMap& moving, const correlation::MatchedFilter& filter,
+              const SearchSpace& space, const map::StripFrame& strip,
+              std::vector<map::Block> blocks, int peaks, double min_inside);
 
   /// The best of `fine` at each of the places. Scores: sum of the blocks' scores over the deviation
   /// of such a sum by chance, so that strips partly beyond the map's edge compare with others.

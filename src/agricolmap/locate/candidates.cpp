@@ -9,7 +9,8 @@ namespace {
 /// The strip's corners where a candidate puts them [m].
 using Corners = std::array<Eigen::Vector2d, 4>;
 
-Corners cornersOf(const Candidate& candidate, const map::StripFrame& strip, const SearchSpace& space) {
+Corners cornersOf(const Candidate& candidate, const map::StripFrame& strip,
+                  const SearchSpace& space) {
   const Eigen::Affine2d pose = poseOf(candidate, space);
   Corners corners = strip.corners();
   for (Eigen::Vector2d& corner : corners) corner = pose * corner;

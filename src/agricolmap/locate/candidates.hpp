@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "agricolmap/map/blocks.hpp"
 #include "agricolmap/locate/hypotheses.hpp"
+#include "agricolmap/map/blocks.hpp"
 
 namespace agricolmap::locate {
 

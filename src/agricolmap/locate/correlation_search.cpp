@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/locate/block_search.hpp"
 #include "agricolmap/locate/hypotheses.hpp"
 #include "agricolmap/locate/polish.hpp"
 #include "agricolmap/locate/row_waves.hpp"
-#include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap::locate {
 
@@ -114,7 +114,8 @@ struct CorrelationSearch::Setup {
   }
 };
 
-CorrelationSearch::Setup CorrelationSearch::setUp(const map::GridMap& fixed, const map::GridMap& moving,
+CorrelationSearch::Setup CorrelationSearch::setUp(const map::GridMap& fixed,
+                                                  const map::GridMap& moving,
                                                   const SearchSpace& space, const RowWaves& waves,
                                                   double cell) const {
   const int factor = std::max(1, static_cast<int>(std::lround(cell / fixed.frame.cell)));
@@ -123,8 +124,8 @@ CorrelationSearch::Setup CorrelationSearch::setUp(const map::GridMap& fixed, con
   setup.moving = map::makeSignalMap(moving, factor, options_.signal);
   setup.strip = map::stripFrame(setup.moving);
   const map::StripFrame& strip = setup.strip;
-  const map::Stretch stretch =
-      map::texturedStretch(map::cutBlocks(setup.moving, strip, options_.block), strip, options_.max_length);
+  const map::Stretch stretch = map::texturedStretch(
+      map::cutBlocks(setup.moving, strip, options_.block), strip, options_.max_length);
   setup.blocks = texturedBlocks(stretch.blocks, options_.max_blocks);
   const map::Block& block = setup.blocks.front();
   const Eigen::Matrix3d block_metric =
@@ -141,8 +142,9 @@ CorrelationSearch::Setup CorrelationSearch::setUp(const map::GridMap& fixed, con
   return setup;
 }
 
-AssociationResult CorrelationSearch::associate(const map::GridMap& fixed, const map::GridMap& moving,
-                                               const SearchSpace& space, StageTimes& times) const {
+AssociationResult CorrelationSearch::associate(const map::GridMap& fixed,
+                                               const map::GridMap& moving, const SearchSpace& space,
+                                               StageTimes& times) const {
   return times.run("search", [&] { return search(fixed, moving, space); });
 }
 

@@ -4,8 +4,8 @@
 // correlations are few; the fine hypotheses are looked at where the blocks together promise much.
 #pragma once
 
-#include "agricolmap/locate/association.hpp"
 #include "agricolmap/correlation/matched_filter.hpp"
+#include "agricolmap/locate/association.hpp"
 #include "agricolmap/locate/row_waves.hpp"
 
 namespace agricolmap::locate {
@@ -33,8 +33,8 @@ void describe(OptionTable& table, CorrelationOptions& options);
 class CorrelationSearch : public Association {
  public:
   explicit CorrelationSearch(const CorrelationOptions& options);
-  AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving, const SearchSpace& space,
-                              StageTimes& times) const override;
+  AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving,
+                              const SearchSpace& space, StageTimes& times) const override;
 
  private:
   struct Setup;

@@ -25,16 +25,17 @@ struct Sought {
 /// Largest distance [m] of the best placement's matches from where they belong, for a strip of
 /// 5 × 1.6 m in a field of `field.size`, and the guess wrong by `error`.
 double worstMatch(const TestField& field, const Sought& error) {
-  const evaluate::Truth truth = growField(field);
+  const Truth truth = growField(field);
   const Eigen::Vector2d middle = Eigen::Vector2d::Constant(0.5 * field.size);
   const Eigen::Affine2d fixed_from_moving =
       guessError(middle, error.shift, error.yaw, error.scale_x, error.scale_y);
-  const map::GridMap fixed =
-      viewOf(truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(field.size)),
-             Eigen::Affine2d::Identity(), 0.02, 11);
-  const map::GridMap moving = viewOf(
-      truth, field, map::Box2(middle - Eigen::Vector2d(2.5, 0.8), middle + Eigen::Vector2d(2.5, 0.8)),
-      fixed_from_moving, 0.05, 12);
+  const map::GridMap fixed = viewOf(
+      truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(field.size)),
+      Eigen::Affine2d::Identity(), 0.02, 11);
+  const map::GridMap moving =
+      viewOf(truth, field,
+             map::Box2(middle - Eigen::Vector2d(2.5, 0.8), middle + Eigen::Vector2d(2.5, 0.8)),
+             fixed_from_moving, 0.05, 12);
   SearchSpace space;
   space.centre = middle;
   StageTimes times;

@@ -13,8 +13,8 @@ constexpr int kSweeps = 6;          // per step length, at most
 
 }  // namespace
 
-Polisher::Polisher(const map::SignalMap& moving, const correlation::MatchedFilter& filter, const SearchSpace& space,
-                   const Eigen::Matrix3d& strip_metric, double min_inside)
+Polisher::Polisher(const map::SignalMap& moving, const correlation::MatchedFilter& filter,
+                   const SearchSpace& space, const Eigen::Matrix3d& strip_metric, double min_inside)
     : filter_(filter), space_(space), min_inside_(min_inside) {
   const auto height_weight = static_cast<float>(filter.options().height_weight);
   for (int r = 0; r < moving.frame.rows; ++r) {
@@ -22,8 +22,8 @@ Polisher::Polisher(const map::SignalMap& moving, const correlation::MatchedFilte
       const std::size_t i = moving.weight.index(r, c);
       if (moving.weight[i] <= 0.0F) continue;
       const float w = moving.weight[i];
-      simulate::Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(), w * moving.channel[0][i],
-                w * height_weight * moving.channel[1][i], 0.0F};
+      Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(),
+                          w * moving.channel[0][i], w * height_weight * moving.channel[1][i], 0.0F};
       cell.energy = cell.greenness * cell.greenness + cell.height * cell.height;
       energy_ += static_cast<double>(cell.energy);
       cells_.push_back(cell);
@@ -47,7 +47,7 @@ double Polisher::score(const Candidate& candidate) const {
   const auto stride = static_cast<std::size_t>(green.cols());
   double sum = 0.0;
   double inside = 0.0;
-  for (const simulate::Cell& c : cells_) {
+  for (const Cell& c : cells_) {
     const float x = origin.x() + linear(0, 0) * c.offset.x() + linear(0, 1) * c.offset.y();
     const float y = origin.y() + linear(1, 0) * c.offset.x() + linear(1, 1) * c.offset.y();
     if (!(x >= 0.0F && y >= 0.0F && x < last_col && y < last_row)) continue;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "agricolmap/locate/candidates.hpp"
 #include "agricolmap/correlation/matched_filter.hpp"
+#include "agricolmap/locate/candidates.hpp"
 
 namespace agricolmap::locate {
 
@@ -12,8 +12,8 @@ namespace agricolmap::locate {
 /// the sum over its cells of their values times the whitened fixed map where the pose puts them.
 class Polisher {
  public:
-  Polisher(const map::SignalMap& moving, const correlation::MatchedFilter& filter, const SearchSpace& space,
-           const Eigen::Matrix3d& strip_metric, double min_inside);
+  Polisher(const map::SignalMap& moving, const correlation::MatchedFilter& filter,
+           const SearchSpace& space, const Eigen::Matrix3d& strip_metric, double min_inside);
 
   /// Score in the candidate's deviations, counting the cells that lie in the map; −∞ when these are
   /// less than the least share of the strip.
@@ -22,12 +22,12 @@ class Polisher {
   Candidate improve(Candidate candidate) const;
 
  private:
-  struct simulate::Cell {
+  struct Cell {
     Eigen::Vector2f offset;  ///< from the search space's centre [m]
     float greenness, height;
     float energy;
   };
-  std::vector<simulate::Cell> cells_;
+  std::vector<Cell> cells_;
   const correlation::MatchedFilter& filter_;
   const SearchSpace& space_;
   Eigen::Matrix3d directions_;  ///< columns: steps of (yaw, log s_x, log s_y) that move 1 m RMS

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "agricolmap/correlation/fft.hpp"
 #include "agricolmap/core/parabola.hpp"
+#include "agricolmap/correlation/fft.hpp"
 
 namespace agricolmap::locate {
 namespace {
@@ -46,7 +46,7 @@ Spectrum spectrumOf(const map::SignalMap& map, const Raster<float>& value) {
   const int cols = map.frame.cols;
   // Twice the size: peaks between the frequencies of a narrow strip must not be missed.
   const correlation::Fft2 fft(correlation::Fft2::goodSize(rows < kMostCells / 2 ? 2 * rows : rows),
-                 correlation::Fft2::goodSize(cols < kMostCells / 2 ? 2 * cols : cols));
+                              correlation::Fft2::goodSize(cols < kMostCells / 2 ? 2 * cols : cols));
   correlation::ComplexRaster data(fft.size());
   correlation::ComplexRaster scratch(fft.size());
   const auto taper = [](int i, int n) {
@@ -69,8 +69,8 @@ Spectrum spectrumOf(const map::SignalMap& map, const Raster<float>& value) {
 
 }  // namespace
 
-std::vector<Wave> strongestWaves(const map::GridMap& map, const map::SignalOptions& options, int most,
-                                 double min_strength) {
+std::vector<Wave> strongestWaves(const map::GridMap& map, const map::SignalOptions& options,
+                                 int most, double min_strength) {
   const map::SignalMap signal = map::makeSignalMap(middleOf(map), 1, options);
   const int channel = options.term == map::DataTerm::kHeight ? 1 : 0;
   const Spectrum spectrum = spectrumOf(signal, signal.channel[channel]);

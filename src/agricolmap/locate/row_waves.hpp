@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/locate/hypotheses.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::locate {
 
@@ -20,8 +20,8 @@ struct Wave {
 /// greenness out), strongest first, at most `most`, of at least `min_strength`. Only
 /// wavelengths between four cells and the high-pass of `options` count, and of a large map only its
 /// middle: rows are the same elsewhere.
-std::vector<Wave> strongestWaves(const map::GridMap& map, const map::SignalOptions& options, int most,
-                                 double min_strength);
+std::vector<Wave> strongestWaves(const map::GridMap& map, const map::SignalOptions& options,
+                                 int most, double min_strength);
 
 /// How far a carried wave may be from the other map's, relative to its length.
 struct WaveTolerance {

@@ -27,16 +27,17 @@ struct Views {
 Views rowField(double yaw, double scale_x, double scale_y) {
   TestField field;
   field.seed = 31;
-  const evaluate::Truth truth = growField(field);
+  const Truth truth = growField(field);
   const Eigen::Vector2d middle = Eigen::Vector2d::Constant(0.5 * field.size);
   Views views;
   views.truth = {yaw, scale_x, scale_y};
-  views.fixed =
-      viewOf(truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(field.size)),
-             Eigen::Affine2d::Identity(), 0.02, 1);
-  views.moving = viewOf(
-      truth, field, map::Box2(middle - Eigen::Vector2d(4.0, 1.1), middle + Eigen::Vector2d(4.0, 1.1)),
-      guessError(middle, {0.5, -0.4}, yaw, scale_x, scale_y), 0.05, 2);
+  views.fixed = viewOf(truth, field,
+                       map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(field.size)),
+                       Eigen::Affine2d::Identity(), 0.02, 1);
+  views.moving =
+      viewOf(truth, field,
+             map::Box2(middle - Eigen::Vector2d(4.0, 1.1), middle + Eigen::Vector2d(4.0, 1.1)),
+             guessError(middle, {0.5, -0.4}, yaw, scale_x, scale_y), 0.05, 2);
   return views;
 }
 

@@ -4,8 +4,8 @@
 // made the refinement's scale across the strip up to 2 % too small.
 #pragma once
 
-#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::map {
 

@@ -11,9 +11,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "agricolmap/map/ground_plane.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/map/ground_plane.hpp"
 
 namespace agricolmap::map {
 

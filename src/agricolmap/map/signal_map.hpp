@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "agricolmap/map/data_term.hpp"
-#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/raster.hpp"
+#include "agricolmap/map/data_term.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::map {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::testing {
 
@@ -27,7 +27,7 @@ struct TestField {
 };
 
 /// Truth at 1 cm: greenness (0–1) and height [m].
-struct evaluate::Truth {
+struct Truth {
   Raster<float> green;
   Raster<float> height;
   static constexpr double kCell = 0.01;
@@ -39,14 +39,14 @@ struct evaluate::Truth {
   }
 };
 
-inline void addLeaf(evaluate::Truth& truth, const Eigen::Vector2d& at, double sigma, double tall) {
-  const int reach = static_cast<int>(3.0 * sigma / evaluate::Truth::kCell);
-  const int row0 = static_cast<int>(at.y() / evaluate::Truth::kCell);
-  const int col0 = static_cast<int>(at.x() / evaluate::Truth::kCell);
+inline void addLeaf(Truth& truth, const Eigen::Vector2d& at, double sigma, double tall) {
+  const int reach = static_cast<int>(3.0 * sigma / Truth::kCell);
+  const int row0 = static_cast<int>(at.y() / Truth::kCell);
+  const int col0 = static_cast<int>(at.x() / Truth::kCell);
   for (int row = row0 - reach; row <= row0 + reach; ++row) {
     for (int col = col0 - reach; col <= col0 + reach; ++col) {
       if (!truth.green.contains(row, col)) continue;
-      const Eigen::Vector2d p = evaluate::Truth::kCell * Eigen::Vector2d(col + 0.5, row + 0.5);
+      const Eigen::Vector2d p = Truth::kCell * Eigen::Vector2d(col + 0.5, row + 0.5);
       const double value = std::exp(-0.5 * (p - at).squaredNorm() / (sigma * sigma));
       truth.green(row, col) = std::max(truth.green(row, col), static_cast<float>(value));
       truth.height(row, col) = std::max(truth.height(row, col), static_cast<float>(tall * value));
@@ -54,9 +54,9 @@ inline void addLeaf(evaluate::Truth& truth, const Eigen::Vector2d& at, double si
   }
 }
 
-inline evaluate::Truth growField(const TestField& field) {
-  const int n = static_cast<int>(field.size / evaluate::Truth::kCell);
-  evaluate::Truth truth{Raster<float>(n, n), Raster<float>(n, n)};
+inline Truth growField(const TestField& field) {
+  const int n = static_cast<int>(field.size / Truth::kCell);
+  Truth truth{Raster<float>(n, n), Raster<float>(n, n)};
   Random random(field.seed);
   Random own = Random::stream(field.leaf_seed, 1);
   for (double y = 0.5 * field.rows; y < field.size; y += field.rows) {
@@ -81,9 +81,9 @@ inline evaluate::Truth growField(const TestField& field) {
 
 /// The cells whose centre, moved by `field_from_view`, see the truth; others of `window` too when
 /// they lie in the field, else they are empty. `holes` is the share of cells left empty.
-inline GridMap viewOf(const evaluate::Truth& truth, const TestField& field, const Box2& window,
+inline map::GridMap viewOf(const Truth& truth, const TestField& field, const map::Box2& window,
                       const Eigen::Affine2d& field_from_view, double holes, std::uint64_t seed) {
-  GridMap map;
+  map::GridMap map;
   map.frame.cell = 0.02;
   map.frame.corner = (window.min() / 0.02).array().floor() * 0.02;
   map.frame.cols = static_cast<int>(std::lround(window.sizes().x() / 0.02));

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/raster.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::map {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "agricolmap/map/vegetation.hpp"
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/map/vegetation.hpp"
 
 namespace agricolmap::map {
 namespace {

@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "agricolmap/core/scaled_rotation.hpp"
-#include "agricolmap/paper/estimate_affine.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/transform.hpp"
+#include "agricolmap/paper/estimate_affine.hpp"
 
 namespace agricolmap::paper {
 namespace {
@@ -20,10 +20,10 @@ Eigen::Affine2d poseOf(double yaw, double sx, double sy, const Eigen::Matrix2d& 
 }
 
 /// Points of a 10 × 2 m strip, moved, with normal noise and a share of points moved elsewhere.
-std::vector<locate::Match> stripMatches(const Eigen::Affine2d& pose, std::size_t count, double noise,
+std::vector<Match> stripMatches(const Eigen::Affine2d& pose, std::size_t count, double noise,
                                 double outliers, std::uint64_t seed) {
   Random random(seed);
-  std::vector<locate::Match> matches;
+  std::vector<Match> matches;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector2d q(random.uniform(100.0, 110.0), random.uniform(50.0, 52.0));
     Eigen::Vector2d p = pose * q;
@@ -52,7 +52,7 @@ TEST(EstimateAffine, RecoversExactMaps) {
   for (const double turn : {0.0, 0.4, -2.0}) {
     for (const double yaw : {-3.0, -0.2, 0.0, 0.2, 2.5}) {
       const Eigen::Matrix2d axes = rotation2(turn);
-      const Eigen::Affine2d truth = locate::poseOf(yaw, 1.3, 0.7, axes);
+      const Eigen::Affine2d truth = poseOf(yaw, 1.3, 0.7, axes);
       const auto estimate = estimateAffine(stripMatches(truth, 50, 0.0, 0.0, 1), axes, {});
       ASSERT_TRUE(estimate.ok());
       EXPECT_LT(gap(estimate.fixed_from_moving, truth), 1e-9);
@@ -67,10 +67,10 @@ TEST(EstimateAffine, RecoversExactMaps) {
 
 TEST(EstimateAffine, ClosedFormBeatsEveryNeighbour) {
   const Eigen::Matrix2d axes = rotation2(0.3);
-  const auto matches = stripMatches(locate::poseOf(0.1, 1.1, 0.9, axes), 60, 0.3, 0.0, 5);
+  const auto matches = stripMatches(poseOf(0.1, 1.1, 0.9, axes), 60, 0.3, 0.0, 5);
   const auto cost = [&](const Eigen::Affine2d& pose) {
     double sum = 0.0;
-    for (const locate::Match& m : matches) sum += (m.fixed - pose * m.moving).squaredNorm();
+    for (const Match& m : matches) sum += (m.fixed - pose * m.moving).squaredNorm();
     return sum;
   };
   const auto fit = fitScaledRotation(matches, {}, axes);
@@ -81,7 +81,7 @@ TEST(EstimateAffine, ClosedFormBeatsEveryNeighbour) {
     for (const double sx : {-1e-3, 0.0, 1e-3}) {
       for (const double sy : {-1e-3, 0.0, 1e-3}) {
         Eigen::Affine2d pose =
-            locate::poseOf(fit->yaw + yaw, fit->scale.x() + sx, fit->scale.y() + sy, axes);
+            poseOf(fit->yaw + yaw, fit->scale.x() + sx, fit->scale.y() + sy, axes);
         pose.translation() = fit->fixed_from_moving * middle - pose.linear() * middle;
         EXPECT_GE(cost(pose), best - 1e-9);
       }
@@ -90,7 +90,7 @@ TEST(EstimateAffine, ClosedFormBeatsEveryNeighbour) {
 }
 
 TEST(EstimateAffine, WithstandsOutliersAndNoise) {
-  const Eigen::Affine2d truth = locate::poseOf(0.2, 1.3, 0.7, Eigen::Matrix2d::Identity());
+  const Eigen::Affine2d truth = poseOf(0.2, 1.3, 0.7, Eigen::Matrix2d::Identity());
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const auto matches = stripMatches(truth, 2000, 0.03, 0.4, seed);
     const auto estimate = estimateAffine(matches, Eigen::Matrix2d::Identity(), {});
@@ -119,15 +119,15 @@ TEST(EstimateAffine, FreeModelSeesShearThatTheOtherCannot) {
 
 TEST(EstimateAffine, NamesWhatIsMissing) {
   const Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();
-  const Eigen::Affine2d truth = locate::poseOf(0.0, 1.0, 1.0, axes);
+  const Eigen::Affine2d truth = poseOf(0.0, 1.0, 1.0, axes);
   const auto few = estimateAffine(stripMatches(truth, 5, 0.0, 0.0, 1), axes, {});
   EXPECT_EQ(few.status, AffineStatus::kTooFewMatches);
   EXPECT_EQ(few.matches, 5U);
   EXPECT_TRUE(few.fixed_from_moving.matrix().array().isNaN().all());
 
-  std::vector<locate::Match> line;
-  std::vector<locate::Match> spot;
-  std::vector<locate::Match> mirrored;
+  std::vector<Match> line;
+  std::vector<Match> spot;
+  std::vector<Match> mirrored;
   for (int k = 0; k < 40; ++k) {
     line.push_back({Eigen::Vector2d(k, 0.0), Eigen::Vector2d(k, 1.0)});
     spot.push_back({Eigen::Vector2d(1.0, 2.0), Eigen::Vector2d(1.0, 2.0)});

@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap::paper {
@@ -41,7 +41,7 @@ constexpr double kMedianToSigma = 1.1774;  ///< median of a 2-D normal's distanc
 constexpr double kLeastSigma = 1e-6;       ///< keeps exact data from dividing by zero [m]
 
 /// Weighted least squares of any 2-D affine map; nothing when the points span no area.
-std::optional<Eigen::Affine2d> fitFree(std::span<const locate::Match> matches,
+std::optional<Eigen::Affine2d> fitFree(std::span<const Match> matches,
                                        std::span<const double> weights) {
   double total = 0.0;
   Eigen::Vector2d mean_q = Eigen::Vector2d::Zero();
@@ -74,10 +74,10 @@ std::optional<Eigen::Affine2d> fitFree(std::span<const locate::Match> matches,
 /// One problem: the matches, and how a map is fitted to some of them.
 class Problem {
  public:
-  Problem(std::span<const locate::Match> matches, const Eigen::Matrix2d& axes, const AffineOptions& options)
+  Problem(std::span<const Match> matches, const Eigen::Matrix2d& axes, const AffineOptions& options)
       : matches_(matches), axes_(orthonormalAxes(axes)), options_(options) {}
 
-  std::optional<Eigen::Affine2d> fit(std::span<const locate::Match> matches,
+  std::optional<Eigen::Affine2d> fit(std::span<const Match> matches,
                                      std::span<const double> weights) const {
     if (options_.model == AffineModel::kFree) return fitFree(matches, weights);
     const auto fitted = fitScaledRotation(matches, weights, axes_);
@@ -114,9 +114,9 @@ class Problem {
     };
     consider(fit(matches_, {}));
     Random random(static_cast<std::uint64_t>(options_.seed));
-    std::vector<locate::Match> sample(kMinimal);
+    std::vector<Match> sample(kMinimal);
     for (int k = 0; k < options_.starts; ++k) {
-      for (locate::Match& match : sample) match = matches_[random.below(matches_.size())];
+      for (Match& match : sample) match = matches_[random.below(matches_.size())];
       consider(fit(sample, {}));
     }
     return best;
@@ -145,7 +145,7 @@ class Problem {
   const Eigen::Matrix2d& axes() const { return axes_; }
 
  private:
-  std::span<const locate::Match> matches_;
+  std::span<const Match> matches_;
   Eigen::Matrix2d axes_;
   const AffineOptions& options_;
 };
@@ -163,7 +163,7 @@ AffineEstimate failure(AffineStatus status, std::size_t matches) {
 
 }  // namespace
 
-AffineEstimate estimateAffine(std::span<const locate::Match> matches, const Eigen::Matrix2d& scale_axes,
+AffineEstimate estimateAffine(std::span<const Match> matches, const Eigen::Matrix2d& scale_axes,
                               const AffineOptions& options) {
   checkOptions(options);
   const auto least = static_cast<std::size_t>(options.least);

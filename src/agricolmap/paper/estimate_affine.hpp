@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/locate/association.hpp"
 
 namespace agricolmap::paper {
 
@@ -54,7 +54,7 @@ struct AffineEstimate {
 /// Rousseeuw 1984), then reweights with Tukey's biweight: the deviation is the median residual
 /// distance over 1.1774, as of a 2-D normal. Each fit is in closed form (fitScaledRotation).
 /// Withstands just under half outliers. Deterministic.
-AffineEstimate estimateAffine(std::span<const locate::Match> matches, const Eigen::Matrix2d& scale_axes,
+AffineEstimate estimateAffine(std::span<const Match> matches, const Eigen::Matrix2d& scale_axes,
                               const AffineOptions& options);
 
 }  // namespace agricolmap::paper

@@ -5,9 +5,9 @@
 #include <iterator>
 #include <numbers>
 
-#include "agricolmap/map/warp.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
+#include "agricolmap/map/warp.hpp"
 
 namespace agricolmap::paper {
 
@@ -36,10 +36,12 @@ map::Box2 boxOf(const GridFrame& frame) {
 }
 
 /// What the moving map can reach, with ground for the descriptors' sample points.
-map::Box2 searchWindow(const map::GridMap& moving, const Reach& reach, const DescribeOptions& options) {
+map::Box2 searchWindow(const map::GridMap& moving, const Reach& reach,
+                       const DescribeOptions& options) {
   const map::Box2 box = boxOf(moving.frame);
   map::Box2 window;
-  for (const auto corner : {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
+  for (const auto corner :
+       {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
     window.extend(reach.forwardBox(box.corner(corner)));
   }
   const double margin = 4.0 * options.daisy.radius * moving.frame.cell;
@@ -58,12 +60,12 @@ std::vector<double> middles(double limit, double tolerance) {
 }
 
 /// Warps of the moving map about the centre that leave only tolerable errors.
-std::vector<Eigen::Affine2d> warpsOver(const locate::SearchSpace& space,
+std::vector<Eigen::Affine2d> warpsOver(const SearchSpace& space,
                                        const FlowAssociationOptions& options) {
   if (!options.warps) return {Eigen::Affine2d::Identity()};
-  const locate::PriorUncertainty& u = space.uncertainty;
+  const PriorUncertainty& u = space.uncertainty;
   const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
-  const std::vector<double> scales = middles(locate::logScaleLimit(u), options.scale_tolerance);
+  const std::vector<double> scales = middles(logScaleLimit(u), options.scale_tolerance);
   std::vector<Eigen::Affine2d> warps;
   for (const double heading : middles(u.heading_deg, options.heading_tolerance_deg)) {
     for (const double x : scales) {
@@ -81,16 +83,16 @@ std::vector<Eigen::Affine2d> warpsOver(const locate::SearchSpace& space,
 
 /// A placement with what it was found from.
 struct Found {
-  locate::Placement placement;
+  Placement placement;
   ScaledRotation pose;
   std::size_t seeds = 0;
-  std::vector<locate::Match> all;  ///< matches that were voted on
+  std::vector<Match> all;  ///< matches that were voted on
 };
 
 /// One search: its maps and what stays the same from warp to warp.
 class FlowSearch {
  public:
-  FlowSearch(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
+  FlowSearch(const map::GridMap& fixed, const map::GridMap& moving, const SearchSpace& space,
              const FlowAssociationOptions& options, StageTimes& times)
       : moving_(moving), space_(space), options_(options), times_(times) {
     times_.run("describe", [&] {
@@ -117,7 +119,7 @@ class FlowSearch {
     for (const Found& candidate : found) {
       const Eigen::Affine2d& warp = candidate.pose.fixed_from_moving;
       // In the warped map the scale axes have turned, and scales multiply along them.
-      locate::SearchSpace near = space_;
+      SearchSpace near = space_;
       near.uncertainty = {.translation = 0.3, .heading_deg = 1.5, .scale = 0.04};
       near.scale_axes = rotation2(candidate.pose.yaw) * space_.scale_axes;
       near.centre = warp * space_.centre;
@@ -133,7 +135,7 @@ class FlowSearch {
 
   /// Matches from the warped map, in its coordinates.
   struct Matched {
-    std::vector<locate::Match> matches;
+    std::vector<Match> matches;
     std::size_t seeds = 0;
   };
 
@@ -161,13 +163,13 @@ class FlowSearch {
   /// Votes on matches of a warped map after `vote_from_moving`, in whose coordinates `space`
   /// speaks. Scores count seeds as if the warp did not stretch.
   std::vector<Found> vote(const Matched& matched, const Eigen::Affine2d& warp,
-                          const locate::SearchSpace& space, const Eigen::Affine2d& vote_from_moving) const {
+                          const SearchSpace& space, const Eigen::Affine2d& vote_from_moving) const {
     return times_.run("vote", [&] {
       const Eigen::Affine2d unwarp = warp.inverse();
-      std::vector<locate::Match> original = matched.matches;
-      for (locate::Match& m : original) m.moving = unwarp * m.moving;
-      std::vector<locate::Match> voted_on = original;
-      for (locate::Match& m : voted_on) m.moving = vote_from_moving * m.moving;
+      std::vector<Match> original = matched.matches;
+      for (Match& m : original) m.moving = unwarp * m.moving;
+      std::vector<Match> voted_on = original;
+      for (Match& m : voted_on) m.moving = vote_from_moving * m.moving;
       std::vector<Found> result;
       for (const VotedPlacement& voted :
            voteCoherent(voted_on, space, moving_.frame.cell, options_.vote)) {
@@ -204,8 +206,8 @@ class FlowSearch {
       if (result.size() == static_cast<std::size_t>(options_.vote.placements)) break;
       const bool known = std::any_of(result.begin(), result.end(), [&](const Found& better) {
         double farthest = 0.0;
-        for (const auto which :
-             {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
+        for (const auto which : {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft,
+                                 map::Box2::TopRight}) {
           const Eigen::Vector2d corner = box.corner(which);
           farthest = std::max(farthest, (candidate.pose.fixed_from_moving * corner -
                                          better.pose.fixed_from_moving * corner)
@@ -219,7 +221,7 @@ class FlowSearch {
   }
 
   const map::GridMap& moving_;
-  const locate::SearchSpace& space_;
+  const SearchSpace& space_;
   const FlowAssociationOptions& options_;
   StageTimes& times_;
   Pyramid fixed_maps_;
@@ -233,8 +235,10 @@ FlowAssociation::FlowAssociation(const FlowAssociationOptions& options) : option
   checkOptions(options);
 }
 
-locate::AssociationResult FlowAssociation::associate(const map::GridMap& fixed, const map::GridMap& moving,
-                                             const locate::SearchSpace& space, StageTimes& times) const {
+locate::AssociationResult FlowAssociation::associate(const map::GridMap& fixed,
+                                                     const map::GridMap& moving,
+                                                     const SearchSpace& space,
+                                                     StageTimes& times) const {
   const FlowSearch search(fixed, moving, space, options_, times);
   std::vector<Found> found = search.search();
   locate::AssociationResult result;

@@ -2,8 +2,8 @@
 // part.
 #pragma once
 
-#include "agricolmap/paper/describe/descriptor_map.hpp"
 #include "agricolmap/locate/association.hpp"
+#include "agricolmap/paper/describe/descriptor_map.hpp"
 #include "agricolmap/paper/flow/patch_match.hpp"
 #include "agricolmap/paper/vote/coherent_vote.hpp"
 
@@ -40,8 +40,8 @@ class FlowAssociation : public locate::Association {
  public:
   /// Throws UsageError for options outside their limits.
   explicit FlowAssociation(const FlowAssociationOptions& options);
-  locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
-                              StageTimes& times) const override;
+  locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving,
+                                      const SearchSpace& space, StageTimes& times) const override;
 
  private:
   FlowAssociationOptions options_;

@@ -4,21 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/map/level.hpp"
-#include "agricolmap/map/grid_map.hpp"
-#include "agricolmap/map/hidden_ground.hpp"
-#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/core/options.hpp"
 #include "agricolmap/locate/association.hpp"
 #include "agricolmap/locate/correlation_search.hpp"
-#include "agricolmap/paper/flow_association.hpp"
-#include "agricolmap/paper/estimate_affine.hpp"
-#include "agricolmap/paper/cpd/cpd.hpp"
-#include "agricolmap/refine/dense_refine.hpp"
+#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/map/hidden_ground.hpp"
+#include "agricolmap/map/level.hpp"
+#include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/map/vegetation.hpp"
+#include "agricolmap/paper/cpd/cpd.hpp"
+#include "agricolmap/paper/estimate_affine.hpp"
+#include "agricolmap/paper/flow_association.hpp"
+#include "agricolmap/refine/dense_refine.hpp"
 #include "agricolmap/refine/vertical.hpp"
 #include "agricolmap/verdict/uncertainty.hpp"
 #include "agricolmap/verdict/verdict.hpp"
-#include "agricolmap/core/options.hpp"
 
 namespace agricolmap::pipeline {
 
@@ -31,7 +31,7 @@ struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
   RefineKind refine = RefineKind::kDense;
-  locate::PriorUncertainty prior;
+  PriorUncertainty prior;
   map::LevelOptions level;
   map::GridOptions grid;
   map::SignalOptions signal;

@@ -45,7 +45,7 @@ Eigen::Vector3d meanOf(const Cloud& cloud) {
 }
 
 Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                             const locate::PriorUncertainty& uncertainty) {
+                             const PriorUncertainty& uncertainty) {
   if (!uncertainty.anywhere()) return guess;
   return Eigen::Translation3d(meanOf(fixed) - guess * meanOf(moving)) * guess;
 }
@@ -88,9 +88,9 @@ void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map:
       fixed_box.sizes().x(), fixed_box.sizes().y()));
 }
 
-locate::SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
-                        const locate::PriorUncertainty& uncertainty) {
-  locate::SearchSpace space;
+SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
+                        const PriorUncertainty& uncertainty) {
+  SearchSpace space;
   space.uncertainty = uncertainty;
   space.centre = moving.center();
   const Eigen::Matrix2d axes = frames.levelled_from_moving.linear().topLeftCorner<2, 2>();
@@ -98,9 +98,9 @@ locate::SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frame
   return space;
 }
 
-map::Box2 reachableWindow(const map::Box2& moving, const locate::SearchSpace& space, double rim) {
+map::Box2 reachableWindow(const map::Box2& moving, const SearchSpace& space, double rim) {
   const double heading = space.uncertainty.heading_deg * std::numbers::pi / 180.0;
-  const double stretch = std::exp(locate::logScaleLimit(space.uncertainty));
+  const double stretch = std::exp(logScaleLimit(space.uncertainty));
   map::Box2 window;
   for (const double yaw : {-heading, 0.0, heading}) {
     for (int corner = 0; corner < 4; ++corner) {

@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 
-#include "agricolmap/map/level.hpp"
-#include "agricolmap/map/grid_map.hpp"
-#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/locate/association.hpp"
+#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/map/level.hpp"
 
 namespace agricolmap::pipeline {
 
@@ -24,7 +24,7 @@ Eigen::Vector3d meanOf(const Cloud& cloud);
 /// Where the guess says nothing about the place, the middles of the clouds are laid together, so
 /// that all that follows counts from there, however far apart the files' coordinates are.
 Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                             const locate::PriorUncertainty& uncertainty);
+                             const PriorUncertainty& uncertainty);
 
 /// Levels the fixed cloud.
 void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames);
@@ -40,10 +40,10 @@ void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map:
                              const map::Box2& moving_box);
 
 /// What is searched when the moving map has these bounds.
-locate::SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
-                        const locate::PriorUncertainty& uncertainty);
+SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
+                        const PriorUncertainty& uncertainty);
 
 /// The part of the fixed frame that a moving map of these bounds can reach, and `rim` more [m].
-map::Box2 reachableWindow(const map::Box2& moving, const locate::SearchSpace& space, double rim);
+map::Box2 reachableWindow(const map::Box2& moving, const SearchSpace& space, double rim);
 
 }  // namespace agricolmap::pipeline

@@ -63,7 +63,8 @@ bool supersedes(const PairOutcome& later, const PairOutcome& earlier, double riv
   if (earlier.verdict.status != verdict::Status::kAmbiguous) return better(later, earlier);
   double highest = earlier.evidence.significance;
   for (const RefinedPose& other : earlier.rivals) highest = std::max(highest, other.significance);
-  return later.verdict.status != verdict::Status::kRejected && highest < rival * later.evidence.significance;
+  return later.verdict.status != verdict::Status::kRejected &&
+         highest < rival * later.evidence.significance;
 }
 
 std::optional<PairOutcome> PairPlacer::searchOnce(std::size_t index,
@@ -116,7 +117,7 @@ PairOutcome PairPlacer::search() const {
   return *std::move(best);
 }
 
-PairOutcome PairPlacer::settle(const locate::Placement& placement, std::vector<RefinedPose> rivals) const {
+PairOutcome PairPlacer::settle(const Placement& placement, std::vector<RefinedPose> rivals) const {
   PairOutcome outcome;
   outcome.association.placements = {placement};
   RefineOutcome refined =
@@ -132,8 +133,8 @@ PairPlacer::Judged PairPlacer::judgePose(const Eigen::Affine2d& pose,
   judged.pose = pose;
   const Fit fit = refinement_.fit(pose);
   judged.correlation = fit.correlation;
-  judged.vertical =
-      times_.run("vertical", [&] { return refine::fitVertical(fixed_, moving_, pose, options_.vertical); });
+  judged.vertical = times_.run(
+      "vertical", [&] { return refine::fitVertical(fixed_, moving_, pose, options_.vertical); });
   times_.run("verdict", [&] {
     judged.finding = refinement_.examine(pose, refined, judged.vertical.residual);
     judged.finding.overlap = fit.overlap;

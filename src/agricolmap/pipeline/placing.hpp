@@ -28,7 +28,8 @@ struct PairOutcome {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
   refine::VerticalResult vertical;
   verdict::Evidence evidence;
-  std::optional<verdict::PoseUncertainty> uncertainty;  ///< nothing when too few blocks can be compared
+  std::optional<verdict::PoseUncertainty>
+      uncertainty;  ///< nothing when too few blocks can be compared
   /// Other places, listed when the status is ambiguous, most significant first.
   std::vector<Alternative> alternatives;
   double overlap = 0.0;      ///< share of the moving map's cells that the fixed map sees
@@ -50,7 +51,7 @@ class PairPlacer {
  public:
   /// All references must outlive this. `association` takes the place of the one that the options
   /// name; nullptr: theirs.
-  PairPlacer(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
+  PairPlacer(const map::GridMap& fixed, const map::GridMap& moving, const SearchSpace& space,
              const RegistrationOptions& options, StageTimes& times,
              const locate::Association* association = nullptr)
       : fixed_(fixed),
@@ -67,7 +68,7 @@ class PairPlacer {
   /// after `before`.
   std::optional<PairOutcome> searchOnce(std::size_t attempt, const PairOutcome* before) const;
   /// From a placement that is known already, with its rivals.
-  PairOutcome settle(const locate::Placement& placement, std::vector<RefinedPose> rivals) const;
+  PairOutcome settle(const Placement& placement, std::vector<RefinedPose> rivals) const;
 
  private:
   /// A pose with all that the verdict rests on.
@@ -84,7 +85,7 @@ class PairPlacer {
 
   const map::GridMap& fixed_;
   const map::GridMap& moving_;
-  const locate::SearchSpace& space_;
+  const SearchSpace& space_;
   const RegistrationOptions& options_;
   StageTimes& times_;
   const locate::Association* association_;

@@ -18,10 +18,10 @@ PairOutcome outcome(verdict::Status status, double significance, double rival = 
 }
 
 TEST(Supersedes, AnAcceptedOutcomeReplacesARejectedOne) {
-  EXPECT_TRUE(
-      supersedes(outcome(verdict::Status::kAccepted, 9.0), outcome(verdict::Status::kRejected, 10.0), kRival));
-  EXPECT_FALSE(
-      supersedes(outcome(verdict::Status::kRejected, 10.0), outcome(verdict::Status::kAccepted, 9.0), kRival));
+  EXPECT_TRUE(supersedes(outcome(verdict::Status::kAccepted, 9.0),
+                         outcome(verdict::Status::kRejected, 10.0), kRival));
+  EXPECT_FALSE(supersedes(outcome(verdict::Status::kRejected, 10.0),
+                          outcome(verdict::Status::kAccepted, 9.0), kRival));
 }
 
 TEST(Supersedes, PlacesThatCouldNotBeToldApartAreNotForgotten) {
@@ -36,8 +36,8 @@ TEST(Supersedes, APlaceThatNoneOfThemRivalsReplacesThem) {
   const PairOutcome ambiguous = outcome(verdict::Status::kAmbiguous, 8.7, 7.3);
   EXPECT_TRUE(supersedes(outcome(verdict::Status::kAccepted, 17.4), ambiguous, kRival));
   // The straightened best may be less significant than a rival was.
-  EXPECT_FALSE(
-      supersedes(outcome(verdict::Status::kAccepted, 17.4), outcome(verdict::Status::kAmbiguous, 8.7, 16.0), kRival));
+  EXPECT_FALSE(supersedes(outcome(verdict::Status::kAccepted, 17.4),
+                          outcome(verdict::Status::kAmbiguous, 8.7, 16.0), kRival));
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "agricolmap/refine/basins.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/refine/basins.hpp"
 
 namespace agricolmap::pipeline {
 namespace {
@@ -49,7 +49,7 @@ RefineOutcome failed(std::string why) {
 }  // namespace
 
 PoseRefinement::PoseRefinement(const map::GridMap& fixed, const map::GridMap& moving,
-                               const locate::SearchSpace& space, const RegistrationOptions& options)
+                               const SearchSpace& space, const RegistrationOptions& options)
     : fixed_(fixed),
       moving_(moving),
       filled_(withoutHidden(moving, options)),
@@ -59,14 +59,15 @@ PoseRefinement::PoseRefinement(const map::GridMap& fixed, const map::GridMap& mo
     levels_.push_back({map::makeSignalMap(fixed, factor, options.signal),
                        map::makeSignalMap(moving, factor, options.signal)});
   }
-  meter_ = std::make_unique<verdict::EvidenceMeter>(levels_[kRankingLevel].fixed,
-                                           levels_[kRankingLevel].moving, options.evidence);
+  meter_ = std::make_unique<verdict::EvidenceMeter>(
+      levels_[kRankingLevel].fixed, levels_[kRankingLevel].moving, options.evidence);
 }
 
 std::optional<RefinedPose> PoseRefinement::refineAt(const Level& level, const RefinedPose& start,
                                                     bool across_basins) const {
-  const auto refine = across_basins ? refineAcrossBasins : refineDense;
-  const refine::DenseRefineResult dense = refine(level.fixed, level.moving, start.pose, options_.dense);
+  const auto refine = across_basins ? refine::refineAcrossBasins : refine::refineDense;
+  const refine::DenseRefineResult dense =
+      refine(level.fixed, level.moving, start.pose, options_.dense);
   if (dense.status != refine::RefineStatus::kConverged) return std::nullopt;
   return RefinedPose{dense.fixed_from_moving, start.significance, dense.overlap};
 }
@@ -166,7 +167,8 @@ RefineOutcome PoseRefinement::refineByPoints(
     }
   }
   // Heights start where the maps agree on the ground; the vertical stage has the last word.
-  const refine::VerticalResult vertical = refine::fitVertical(fixed_, moving_, start.pose, options_.vertical);
+  const refine::VerticalResult vertical =
+      refine::fitVertical(fixed_, moving_, start.pose, options_.vertical);
   paper::CpdPose pose;
   pose.plane = start.pose;
   pose.height_offset = vertical.status == refine::VerticalStatus::kOk ? vertical.offset : 0.0;
@@ -192,7 +194,7 @@ bool PoseRefinement::agrees(const RefinedPose& points, const RefinedPose& dense)
          fit(points.pose).correlation >= kLeastCorrelation * fit(dense.pose).correlation;
 }
 
-RefineOutcome PoseRefinement::choose(const std::vector<locate::Placement>& placements, StageTimes& times,
+RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, StageTimes& times,
                                      std::vector<std::pair<std::string, double>>& counts) const {
   if (placements.empty()) {
     return failed("the data association found nothing coherent within the prior's limits");
@@ -231,15 +233,16 @@ RefineOutcome PoseRefinement::choose(const std::vector<locate::Placement>& place
 }
 
 verdict::Finding PoseRefinement::examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
-                                double height_residual) const {
+                                         double height_residual) const {
   verdict::Finding finding;
   finding.pose = pose;
   for (const RefinedPose& rival : outcome.rivals) finding.rivals.push_back(rival.significance);
   const double highest = finding.rivals.empty() ? 0.0 : finding.rivals.front();
   finding.evidence = meter_->measure(pose, space_, highest);
   const Level level = levelUnder(pose, kBlockFactor);
-  finding.uncertainty = verdict::estimateUncertainty(level.fixed, level.moving, pose, finding.evidence,
-                                            space_, height_residual, options_.uncertainty);
+  finding.uncertainty =
+      verdict::estimateUncertainty(level.fixed, level.moving, pose, finding.evidence, space_,
+                                   height_residual, options_.uncertainty);
   return finding;
 }
 
@@ -251,7 +254,8 @@ Fit PoseRefinement::fit(const Eigen::Affine2d& pose) const {
       const std::size_t i = level.moving.weight.index(r, c);
       if (level.moving.weight[i] <= 0.0F) continue;
       seen += 1.0;
-      const map::SignalSample look = map::sampleSignal(level.fixed, pose * level.moving.frame.centre(r, c));
+      const map::SignalSample look =
+          map::sampleSignal(level.fixed, pose * level.moving.frame.centre(r, c));
       if (look.weight <= 0.0F) continue;
       shared += 1.0;
       for (int k = 0; k < map::kSignalChannels; ++k) {

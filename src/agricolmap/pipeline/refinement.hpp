@@ -36,20 +36,20 @@ struct Fit {
 /// Holds the signal maps of one pair at the cell sizes of the refinement.
 class PoseRefinement {
  public:
-  PoseRefinement(const map::GridMap& fixed, const map::GridMap& moving, const locate::SearchSpace& space,
+  PoseRefinement(const map::GridMap& fixed, const map::GridMap& moving, const SearchSpace& space,
                  const RegistrationOptions& options);
 
   /// Estimates an affine from each placement (stage 6) and refines (stage 7): densely, all
   /// placements through the coarse levels and the most significant one to the finest; or, as in the
   /// paper, the placement with most votes by CPD on the vegetation points; or not at all.
-  RefineOutcome choose(const std::vector<locate::Placement>& placements, StageTimes& times,
+  RefineOutcome choose(const std::vector<Placement>& placements, StageTimes& times,
                        std::vector<std::pair<std::string, double>>& counts) const;
   /// Refines one pose densely, from the ranking level on; nothing when it does not hold.
   std::optional<RefinedPose> refineFrom(const Eigen::Affine2d& pose) const;
   /// What the verdict rests on, for the refined `pose` of an outcome. `height_residual`: robust
   /// deviation of the ground's heights [m].
   verdict::Finding examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
-                  double height_residual) const;
+                           double height_residual) const;
   /// At the ranking level: finer maps may be sparser than their cells.
   Fit fit(const Eigen::Affine2d& pose) const;
 
@@ -77,10 +77,11 @@ class PoseRefinement {
 
   const map::GridMap& fixed_;
   const map::GridMap& moving_;
-  map::GridMap filled_;  ///< the moving map with what plants hide from its camera, for the fine levels
-  const locate::SearchSpace& space_;
+  map::GridMap
+      filled_;  ///< the moving map with what plants hide from its camera, for the fine levels
+  const SearchSpace& space_;
   const RegistrationOptions& options_;
-  std::vector<Level> levels_;             ///< of the whole maps, coarse to fine: 12, 6 cm
+  std::vector<Level> levels_;                      ///< of the whole maps, coarse to fine: 12, 6 cm
   std::unique_ptr<verdict::EvidenceMeter> meter_;  ///< at the ranking level, the second
 };
 

@@ -130,7 +130,7 @@ class Registrar {
               ? fixed_box_
               : reachableWindow(moving_box_, result_.space, 2.0 * options_.signal.high_pass);
       result_.fixed_map = map::makeGridMap(fixed_, result_.frames.levelled_from_fixed,
-                                      window.intersection(fixed_box_), grid_);
+                                           window.intersection(fixed_box_), grid_);
       result_.fixed_map.ground_deviation = result_.frames.fixed.roughness;
       if (!options_.prior.scale_unknown) gridMoving();
     });
@@ -191,7 +191,7 @@ class Registrar {
     Eigen::Affine2d plane = Eigen::Affine2d::Identity();
     plane.linear() = then_from_now.linear().topLeftCorner<2, 2>();
     plane.translation() = then_from_now.translation().head<2>();
-    locate::Placement placement;
+    Placement placement;
     placement.score = found.outcome.evidence.significance;
     for (const double u : {0.0, 0.5, 1.0}) {
       for (const double v : {0.0, 0.5, 1.0}) {

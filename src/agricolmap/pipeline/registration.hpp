@@ -36,7 +36,7 @@ struct Registration : PairOutcome {
   PairFrames frames;
   map::GridMap fixed_map;
   map::GridMap moving_map;
-  locate::SearchSpace space;
+  SearchSpace space;
 };
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.

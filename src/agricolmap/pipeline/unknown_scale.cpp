@@ -17,8 +17,8 @@ constexpr double kLeastArea = 1.0;
 }  // namespace
 
 std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed,
-                                 const locate::PriorUncertainty& uncertainty) {
-  const double half = kShare * std::max(0.05, locate::logScaleLimit(uncertainty));
+                                 const PriorUncertainty& uncertainty) {
+  const double half = kShare * std::max(0.05, logScaleLimit(uncertainty));
   const double reach = std::log(kLargestFactor);
   const int count = static_cast<int>(std::ceil((reach - half) / (2.0 * half)));
   const double step = count > 0 ? (reach - half) / count : 0.0;
@@ -28,7 +28,7 @@ std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed
     logs.insert(logs.end(), {(i + 0.5) * step, -(i + 0.5) * step});
   }
   std::vector<double> factors;
-  const double stretch = std::exp(2.0 * locate::logScaleLimit(uncertainty));  // of an area
+  const double stretch = std::exp(2.0 * logScaleLimit(uncertainty));  // of an area
   for (const double log : logs) {
     const double factor = std::exp(log);
     const double area = factor * factor * moving.volume();

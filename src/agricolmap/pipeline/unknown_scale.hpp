@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/locate/association.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::pipeline {
 
@@ -14,6 +14,6 @@ namespace agricolmap::pipeline {
 /// Factors at which a moving map of these bounds would be too large for the fixed map, or too small
 /// to hold anything that could be recognised, are left out.
 std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed,
-                                 const locate::PriorUncertainty& uncertainty);
+                                 const PriorUncertainty& uncertainty);
 
 }  // namespace agricolmap::pipeline

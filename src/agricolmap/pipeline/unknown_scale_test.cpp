@@ -13,11 +13,11 @@ map::Box2 box(double width, double height) {
 }
 
 TEST(ScaleFactors, LeaveNoGapBetweenATenthAndTen) {
-  const locate::PriorUncertainty uncertainty;
+  const PriorUncertainty uncertainty;
   std::vector<double> factors = scaleFactors(box(10.0, 2.2), box(1000.0, 1000.0), uncertainty);
   EXPECT_EQ(factors.front(), 1.0);
   std::sort(factors.begin(), factors.end());
-  const double reach = std::exp(locate::logScaleLimit(uncertainty));
+  const double reach = std::exp(logScaleLimit(uncertainty));
   EXPECT_GE(factors.back() * reach, 10.0);
   for (std::size_t i = 1; i < factors.size(); ++i) {
     EXPECT_LE(factors[i] / factors[i - 1], reach * reach);

@@ -145,7 +145,8 @@ struct Sums {
   double block[3][6] = {};  ///< gx², gx·gy, gy² times x², xy, x, y², y, 1
   Parameters right = Parameters::Zero();
   double cells = 0.0;
-  double fm[map::kSignalChannels] = {}, mm[map::kSignalChannels] = {}, ff[map::kSignalChannels] = {};
+  double fm[map::kSignalChannels] = {}, mm[map::kSignalChannels] = {},
+         ff[map::kSignalChannels] = {};
   double rr[map::kSignalChannels] = {}, weight[map::kSignalChannels] = {};
   Sums& operator+=(const Sums& other) {
     for (int b = 0; b < 3; ++b) {
@@ -266,7 +267,7 @@ DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap&
   const Samples samples = collect(moving);
   if (samples.cells.empty()) return result;
   const bool used[map::kSignalChannels] = {fixed.deviation[0] > 0.0 && moving.deviation[0] > 0.0,
-                                      fixed.deviation[1] > 0.0 && moving.deviation[1] > 0.0};
+                                           fixed.deviation[1] > 0.0 && moving.deviation[1] > 0.0};
   const Parameters first = parametersOf(start, samples.middle);
   Parameters current = first;
   Noise noise;

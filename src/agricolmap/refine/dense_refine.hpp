@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::refine {
 

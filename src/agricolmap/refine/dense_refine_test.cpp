@@ -33,7 +33,8 @@ class Field {
   std::vector<Eigen::Vector3d> plants_;
 };
 
-map::SignalMap sample(const GridFrame& frame, const std::function<float(const Eigen::Vector2d&)>& f) {
+map::SignalMap sample(const GridFrame& frame,
+                      const std::function<float(const Eigen::Vector2d&)>& f) {
   map::GridMap map;
   map.frame = frame;
   map.weight = Raster<float>(frame.rows, frame.cols, 1.0F);

@@ -116,8 +116,8 @@ Part partUnder(const map::GridMap& fixed, const map::GridMap& moving, const Eige
           within(box.min().x(), fixed.frame.cols), within(box.max().x() + 1.0, fixed.frame.cols)};
 }
 
-std::vector<Pair> overlap(const map::GridMap& fixed, const map::GridMap& moving, const Eigen::Affine2d& pose,
-                          double window) {
+std::vector<Pair> overlap(const map::GridMap& fixed, const map::GridMap& moving,
+                          const Eigen::Affine2d& pose, double window) {
   const GroundModel under_moving(moving, {0, moving.frame.rows, 0, moving.frame.cols}, window);
   const GroundModel under_fixed(fixed, partUnder(fixed, moving, pose), window);
   std::vector<Pair> pairs;
@@ -216,7 +216,8 @@ double canopyGain(const std::vector<Pair>& pairs) {
 
 /// How far the levelled planes, laid upon one another, may be from the registration's heights [m]:
 /// by their deviations, and by as much as the fixed map's lowest ground here is above its plane.
-double levelDeviation(const map::GridMap& fixed, const map::GridMap& moving, const std::vector<Pair>& pairs) {
+double levelDeviation(const map::GridMap& fixed, const map::GridMap& moving,
+                      const std::vector<Pair>& pairs) {
   std::vector<double> grounds;
   grounds.reserve(pairs.size());
   for (const Pair& pair : pairs) grounds.push_back(pair.fixed_ground);
@@ -245,7 +246,7 @@ VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving
   }
   result.about /= sum;
   for (Pair& pair : pairs) pair.place -= result.about;
-  const Eigen::Vector3d model = map::fitPlane(pairs, ground, options.robust, result.residual);
+  const Eigen::Vector3d model = fitPlane(pairs, ground, options.robust, result.residual);
   result.offset = model[0];
   result.slope = model.tail<2>();
   result.canopy_gain = canopyGain(pairs);

@@ -4,8 +4,8 @@
 
 #include <Eigen/Geometry>
 
-#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::refine {
 

@@ -34,7 +34,7 @@ inline void cutStrip(map::GridMap& map, const TestStrip& strip, const Eigen::Vec
 inline void addMatches(pipeline::Registration& result, const TestStrip& strip,
                        const Eigen::Vector2d& centre) {
   Random random(5);
-  locate::Placement winner;
+  Placement winner;
   for (double u = -0.475; u < 0.5; u += 0.05) {
     for (double v = -0.45; v < 0.5; v += 0.1) {
       const Eigen::Vector2d moving =
@@ -47,7 +47,7 @@ inline void addMatches(pipeline::Registration& result, const TestStrip& strip,
     }
   }
   winner.score = static_cast<double>(winner.matches.size());
-  locate::Placement loser;
+  Placement loser;
   loser.matches = {{centre, centre}};
   result.association.placements = {loser, winner};
   result.association.counts = {
@@ -82,18 +82,19 @@ inline void addEvidence(pipeline::Registration& result, const TestStrip& strip,
 inline pipeline::Registration testRegistration(const TestStrip& strip = {}) {
   TestField field;
   field.size = strip.field;
-  const evaluate::Truth truth = growField(field);
+  const Truth truth = growField(field);
   const Eigen::Vector2d centre = Eigen::Vector2d::Constant(0.48 * strip.field);
   pipeline::Registration result;
   result.pose = guessError(centre, {0.9, -0.6}, 0.06, 1.08, 0.94);
-  result.fixed_map =
-      viewOf(truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(strip.field)),
-             Eigen::Affine2d::Identity(), 0.02, 1);
+  result.fixed_map = viewOf(
+      truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(strip.field)),
+      Eigen::Affine2d::Identity(), 0.02, 1);
   const double c = std::abs(std::cos(strip.heading));
   const double s = std::abs(std::sin(strip.heading));
   const Eigen::Vector2d half(0.5 * (c * strip.length + s * strip.width),
                              0.5 * (s * strip.length + c * strip.width));
-  result.moving_map = viewOf(truth, field, map::Box2(centre - half, centre + half), result.pose, 0.1, 2);
+  result.moving_map =
+      viewOf(truth, field, map::Box2(centre - half, centre + half), result.pose, 0.1, 2);
   cutStrip(result.moving_map, strip, centre);
   result.space.centre = centre;
   result.has_transform = true;

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "agricolmap/simulate/field/render.hpp"
-#include "agricolmap/simulate/simulate.hpp"
 #include "agricolmap/simulate/field/views.hpp"
+#include "agricolmap/simulate/simulate.hpp"
 
 namespace agricolmap::simulate {
 

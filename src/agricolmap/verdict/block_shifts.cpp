@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agricolmap/map/blocks.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/map/blocks.hpp"
 
 namespace agricolmap::verdict {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kMostMove = 2.5;  // cells; a block that goes further has lost 
 constexpr double kRobust = 2.0;    // deviations, as in the dense refinement (Cauchy)
 constexpr std::size_t kLeastCells = 40;
 
-struct simulate::Cell {
+struct Cell {
   Eigen::Vector2d place;  ///< where the pose puts it
   float value[map::kSignalChannels];
 };
@@ -28,17 +28,19 @@ struct Normal {
 };
 
 /// One linearisation of moving − gain·fixed(place + shift) around `shift`.
-Normal linearise(const map::SignalMap& fixed, const std::vector<simulate::Cell>& cells,
+Normal linearise(const map::SignalMap& fixed, const std::vector<Cell>& cells,
                  const Eigen::Vector2d& shift, const double gain[], double deviation) {
   const double cell = fixed.frame.cell;
   const Eigen::Vector2d dx(0.5 * cell, 0.0);
   const Eigen::Vector2d dy(0.0, 0.5 * cell);
   Normal normal;
-  for (const simulate::Cell& c : cells) {
+  for (const Cell& c : cells) {
     const Eigen::Vector2d p = c.place + shift;
     const map::SignalSample here = map::sampleSignal(fixed, p);
-    const map::SignalSample east = map::sampleSignal(fixed, p + dx), west = map::sampleSignal(fixed, p - dx);
-    const map::SignalSample north = map::sampleSignal(fixed, p + dy), south = map::sampleSignal(fixed, p - dy);
+    const map::SignalSample east = map::sampleSignal(fixed, p + dx),
+                            west = map::sampleSignal(fixed, p - dx);
+    const map::SignalSample north = map::sampleSignal(fixed, p + dy),
+                            south = map::sampleSignal(fixed, p - dy);
     if (std::min({here.weight, east.weight, west.weight, north.weight, south.weight}) <= 0.0F) {
       continue;
     }
@@ -61,10 +63,11 @@ Normal linearise(const map::SignalMap& fixed, const std::vector<simulate::Cell>&
 }
 
 /// Gains of the fixed signals that fit the moving ones best under the pose.
-void fitGains(const map::SignalMap& fixed, const std::vector<std::vector<simulate::Cell>>& blocks, double gain[]) {
+void fitGains(const map::SignalMap& fixed, const std::vector<std::vector<Cell>>& blocks,
+              double gain[]) {
   double fm[map::kSignalChannels] = {}, ff[map::kSignalChannels] = {};
   for (const auto& cells : blocks) {
-    for (const simulate::Cell& c : cells) {
+    for (const Cell& c : cells) {
       const map::SignalSample look = map::sampleSignal(fixed, c.place);
       if (look.weight <= 0.0F) continue;
       for (int k = 0; k < map::kSignalChannels; ++k) {
@@ -78,11 +81,12 @@ void fitGains(const map::SignalMap& fixed, const std::vector<std::vector<simulat
   }
 }
 
-BlockShift shiftOf(const map::SignalMap& fixed, const std::vector<simulate::Cell>& cells, const double gain[]) {
+BlockShift shiftOf(const map::SignalMap& fixed, const std::vector<Cell>& cells,
+                   const double gain[]) {
   BlockShift block;
   block.cells = cells.size();
   if (cells.size() < kLeastCells) return block;
-  for (const simulate::Cell& c : cells) block.place += c.place;
+  for (const Cell& c : cells) block.place += c.place;
   block.place /= static_cast<double>(cells.size());
   double deviation = 1.0;
   Normal normal;
@@ -105,7 +109,7 @@ std::vector<BlockShift> shiftBlocks(const map::SignalMap& fixed, const map::Sign
                                     const Eigen::Affine2d& pose, double side) {
   const map::StripFrame strip = map::stripFrame(moving);
   const std::vector<map::Block> blocks = map::cutBlocks(moving, strip, side);
-  std::vector<std::vector<simulate::Cell>> cells(blocks.size());
+  std::vector<std::vector<Cell>> cells(blocks.size());
   parallelFor(blocks.size(), [&](std::size_t b) {
     const Eigen::AlignedBox2d bounds = boundsOf(blocks[b], strip);
     const Eigen::Vector2d low = moving.frame.cellOf(bounds.min());

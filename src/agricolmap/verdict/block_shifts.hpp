@@ -13,7 +13,7 @@ struct BlockShift {
   bool usable = false;  ///< the fixed map has seen it, too, and their textures fit
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< its cells' middle, fixed frame [m]
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m]
-  std::size_t cells = 0;  ///< that the moving map has seen
+  std::size_t cells = 0;                            ///< that the moving map has seen
 };
 
 /// Shifts of about square blocks of side near `side` [m] under `pose`, those of them in which the

@@ -60,7 +60,8 @@ correlation::Template EvidenceMeter::wholeTemplate(const Eigen::Affine2d& pose) 
   Eigen::AlignedBox2d bounds;
   for (const Eigen::Vector2d& corner : strip_.corners()) bounds.extend(corner);
   return correlation::makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
-                      options_.filter.height_weight, [](const Eigen::Vector2d&) { return true; });
+                                   options_.filter.height_weight,
+                                   [](const Eigen::Vector2d&) { return true; });
 }
 
 double EvidenceMeter::significance(const correlation::Template& piece, double deviation,
@@ -92,8 +93,9 @@ double EvidenceMeter::significance(const Eigen::Affine2d& pose) const {
   return significance(piece, filter_.deviation(piece, work), pose);
 }
 
-double EvidenceMeter::highestOther(const correlation::ComplexRaster& surface, const Eigen::Vector2d& centre,
-                                   double radius, const Eigen::Vector2d& peak) const {
+double EvidenceMeter::highestOther(const correlation::ComplexRaster& surface,
+                                   const Eigen::Vector2d& centre, double radius,
+                                   const Eigen::Vector2d& peak) const {
   const GridFrame& frame = fixed_.frame;
   const auto within = [](double at, int count) {
     return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
@@ -123,8 +125,8 @@ double EvidenceMeter::distance(const Eigen::Affine2d& a, const Eigen::Affine2d& 
   return largest;
 }
 
-Raster<float> EvidenceMeter::blockScores(const correlation::Template& piece, const Eigen::Vector2d& at,
-                                         int reach) const {
+Raster<float> EvidenceMeter::blockScores(const correlation::Template& piece,
+                                         const Eigen::Vector2d& at, int reach) const {
   const Raster<float>& green = filter_.whitenedGreenness();
   const Raster<float>& high = filter_.whitenedHeight();
   Raster<float> scores(2 * reach + 1, 2 * reach + 1);
@@ -153,10 +155,10 @@ Raster<float> EvidenceMeter::blockScores(const correlation::Template& piece, con
 BlockEvidence EvidenceMeter::placeBlock(const map::Block& block, const Eigen::Affine2d& pose,
                                         bool& usable) const {
   const double cell = fixed_.frame.cell;
-  const correlation::Template piece =
-      correlation::makeTemplate(moving_, block.centre, pose.linear(), boundsOf(block, strip_), cell,
-                   options_.filter.height_weight,
-                   [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
+  const correlation::Template piece = correlation::makeTemplate(
+      moving_, block.centre, pose.linear(), boundsOf(block, strip_), cell,
+      options_.filter.height_weight,
+      [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
   BlockEvidence evidence;
   evidence.moving = block.centre;
   evidence.place = pose * block.centre;
@@ -202,7 +204,7 @@ bool EvidenceMeter::seenAround(const Eigen::Vector2d& at, double half) const {
   return seen >= kMinSeenShare * looked;
 }
 
-Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const locate::SearchSpace& space,
+Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const SearchSpace& space,
                                 double rival) const {
   const double cell = fixed_.frame.cell;
   Evidence evidence;
@@ -223,7 +225,7 @@ Evidence EvidenceMeter::measure(const Eigen::Affine2d& pose, const locate::Searc
   evidence.block_side = blockSide(strip_, options_);
   const std::vector<map::Block> blocks = map::cutBlocks(moving_, strip_, evidence.block_side);
   std::vector<BlockEvidence> placed(blocks.size());
-  std::vector<char> paper::usable(blocks.size(), 0);
+  std::vector<char> usable(blocks.size(), 0);
   parallelFor(blocks.size(), [&](std::size_t i) {
     bool ok = false;
     placed[i] = placeBlock(blocks[i], pose, ok);

@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/correlation/matched_filter.hpp"
 #include "agricolmap/locate/association.hpp"
 #include "agricolmap/map/blocks.hpp"
-#include "agricolmap/correlation/matched_filter.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::verdict {
 
@@ -47,14 +47,15 @@ double blockSide(const map::StripFrame& strip, const EvidenceOptions& options);
 /// Measures evidence for poses of one pair at one cell size.
 class EvidenceMeter {
  public:
-  EvidenceMeter(const map::SignalMap& fixed, const map::SignalMap& moving, const EvidenceOptions& options);
+  EvidenceMeter(const map::SignalMap& fixed, const map::SignalMap& moving,
+                const EvidenceOptions& options);
 
   /// Whitened score of the whole moving map under `pose`, in deviations of the score over the map:
   /// comparable between poses of the pair, since it does not grow when a map shrinks.
   double significance(const Eigen::Affine2d& pose) const;
   /// Everything. Other peaks are sought among the shifts that `space` allows; `rival` is the
   /// significance of the best other placement, whatever its heading and scales, 0 if there is none.
-  Evidence measure(const Eigen::Affine2d& pose, const locate::SearchSpace& space, double rival) const;
+  Evidence measure(const Eigen::Affine2d& pose, const SearchSpace& space, double rival) const;
 
   /// Largest distance between where two poses put a corner of the strip [m].
   double distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const;
@@ -64,15 +65,18 @@ class EvidenceMeter {
   correlation::Template wholeTemplate(const Eigen::Affine2d& pose) const;
   /// A template's score at a pose, in deviations of what chance gives to as large a part of it as
   /// lies on the fixed map.
-  double significance(const correlation::Template& piece, double deviation, const Eigen::Affine2d& pose) const;
+  double significance(const correlation::Template& piece, double deviation,
+                      const Eigen::Affine2d& pose) const;
   /// Highest score of a shift within `radius` of `centre` and not about `peak` (col, row) [cells].
-  double highestOther(const correlation::ComplexRaster& surface, const Eigen::Vector2d& centre, double radius,
-                      const Eigen::Vector2d& peak) const;
-  BlockEvidence placeBlock(const map::Block& block, const Eigen::Affine2d& pose, bool& usable) const;
+  double highestOther(const correlation::ComplexRaster& surface, const Eigen::Vector2d& centre,
+                      double radius, const Eigen::Vector2d& peak) const;
+  BlockEvidence placeBlock(const map::Block& block, const Eigen::Affine2d& pose,
+                           bool& usable) const;
   /// Whether the fixed map has seen enough of the square of half a side `half` around a cell.
   bool seenAround(const Eigen::Vector2d& at, double half) const;
   /// Scores of a block's shifts by up to `reach` cells, the unshifted one in the middle.
-  Raster<float> blockScores(const correlation::Template& piece, const Eigen::Vector2d& at, int reach) const;
+  Raster<float> blockScores(const correlation::Template& piece, const Eigen::Vector2d& at,
+                            int reach) const;
 
   const map::SignalMap& moving_;
   const map::SignalMap& fixed_;

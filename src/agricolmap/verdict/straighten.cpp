@@ -37,7 +37,7 @@ bool fitsNeighbours(const Evidence& evidence, std::size_t i) {
 
 std::optional<Eigen::Affine2d> straightenedPose(const Evidence& evidence,
                                                 const Eigen::Matrix2d& scale_axes) {
-  std::vector<locate::Match> matches;
+  std::vector<Match> matches;
   std::size_t bent = 0;
   for (std::size_t i = 0; i < evidence.blocks.size(); ++i) {
     if (!fitsNeighbours(evidence, i)) continue;

@@ -64,10 +64,11 @@ double expectedOver(const std::vector<BlockShift>& strip, const std::vector<Bloc
 
 }  // namespace
 
-std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed, const map::SignalMap& moving,
+std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed,
+                                                   const map::SignalMap& moving,
                                                    const Eigen::Affine2d& pose,
                                                    const Evidence& evidence,
-                                                   const locate::SearchSpace& space, double height_residual,
+                                                   const SearchSpace& space, double height_residual,
                                                    const UncertaintyOptions& options) {
   checkOptions(options);
   if (evidence.block_side <= 0.0) return std::nullopt;

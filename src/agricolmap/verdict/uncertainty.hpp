@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "agricolmap/map/signal_map.hpp"
-#include "agricolmap/locate/association.hpp"
-#include "agricolmap/verdict/evidence.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/locate/association.hpp"
+#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/verdict/evidence.hpp"
 
 namespace agricolmap::verdict {
 
@@ -48,10 +48,11 @@ struct PoseUncertainty {
 
 /// Nothing when too few blocks can be compared. `fixed`, `moving`: of the same cell size, fine
 /// enough for centimetres. `height_residual`: robust deviation of the ground's heights [m].
-std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed, const map::SignalMap& moving,
+std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed,
+                                                   const map::SignalMap& moving,
                                                    const Eigen::Affine2d& pose,
                                                    const Evidence& evidence,
-                                                   const locate::SearchSpace& space, double height_residual,
+                                                   const SearchSpace& space, double height_residual,
                                                    const UncertaintyOptions& options);
 
 }  // namespace agricolmap::verdict

@@ -59,7 +59,7 @@ std::string percent(double probability) {
 }
 
 /// What no evidence can outweigh.
-std::vector<std::string> contradictions(const Finding& finding, const locate::SearchSpace& space,
+std::vector<std::string> contradictions(const Finding& finding, const SearchSpace& space,
                                         const VerdictOptions& options) {
   std::vector<std::string> against;
   if (finding.overlap < options.min_overlap) {
@@ -70,7 +70,7 @@ std::vector<std::string> contradictions(const Finding& finding, const locate::Se
   }
   const HorizontalParts parts =
       splitHorizontal(space.scale_axes.transpose() * finding.pose.linear() * space.scale_axes);
-  const double scale_limit = std::exp(locate::logScaleLimit(space.uncertainty)) + options.scale_margin;
+  const double scale_limit = std::exp(logScaleLimit(space.uncertainty)) + options.scale_margin;
   for (const auto& [axis, scale] : {std::pair{"x", parts.scale_x}, {"y", parts.scale_y}}) {
     if (!(scale < scale_limit && scale > 1.0 / scale_limit)) {
       against.push_back(
@@ -160,7 +160,7 @@ VerdictFacts factsOf(const Finding& finding) {
           .overlap = finding.overlap};
 }
 
-Verdict judge(const Finding& finding, const locate::SearchSpace& space, const VerdictOptions& options) {
+Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options) {
   std::vector<std::string> against = contradictions(finding, space, options);
   if (!against.empty()) return {Status::kRejected, std::move(against), 0.0, 0.0};
   const Evidence& evidence = finding.evidence;

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "agricolmap/core/options.hpp"
 #include "agricolmap/locate/association.hpp"
 #include "agricolmap/verdict/evidence.hpp"
 #include "agricolmap/verdict/probability.hpp"
 #include "agricolmap/verdict/uncertainty.hpp"
-#include "agricolmap/core/options.hpp"
 
 namespace agricolmap::verdict {
 
@@ -48,7 +48,7 @@ struct Finding {
 /// What the probability of a finding rests on.
 VerdictFacts factsOf(const Finding& finding);
 
-Verdict judge(const Finding& finding, const locate::SearchSpace& space, const VerdictOptions& options);
+Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options);
 
 /// The verdict on a pair for which a stage found no answer at all.
 Verdict rejectBecause(std::string reason);

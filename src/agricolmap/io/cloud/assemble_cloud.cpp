@@ -43,7 +43,7 @@ Eigen::Vector3d chooseOrigin(const PointSource& source, const std::string& name)
     throwIfInterrupted();
     source.decode(chunk, [&](const PointBlock& block) {
       for (std::size_t i = 0; i < block.count && !found; ++i) {
-        if (!paper::usable(block, i)) continue;
+        if (!usable(block, i)) continue;
         origin = {std::round(block.xyz[0][i]), std::round(block.xyz[1][i]),
                   std::round(block.xyz[2][i])};
         found = true;
@@ -80,7 +80,7 @@ ColourRange colourRange(const PointSource& source) {
     ColourRange& range = parts[chunk];
     source.decode(chunk, [&](const PointBlock& block) {
       for (std::size_t i = 0; i < block.count; ++i) {
-        if (!paper::usable(block, i) || !usableColour(block, i)) continue;
+        if (!usable(block, i) || !usableColour(block, i)) continue;
         for (const auto& channel : block.wide) {
           range.low = std::min(range.low, channel[i]);
           range.high = std::max(range.high, channel[i]);
@@ -166,7 +166,7 @@ Cloud assembleCloud(const PointSource& source, const std::string& name) {
     float far = 0.0F;
     source.decode(chunk, [&](const PointBlock& block) {
       for (std::size_t i = 0; i < block.count; ++i) {
-        if (!paper::usable(block, i) || (isWide(kind) && !usableColour(block, i))) continue;
+        if (!usable(block, i) || (isWide(kind) && !usableColour(block, i))) continue;
         const Eigen::Vector3d point(block.xyz[0][i], block.xyz[1][i], block.xyz[2][i]);
         const Eigen::Vector3f local = (point - cloud.origin).cast<float>();
         far = std::max(far, local.cwiseAbs().maxCoeff());

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/text/mapped_file.hpp"
 #include "agricolmap/io/cloud/pcd_reader.hpp"
 #include "agricolmap/io/cloud/ply_reader.hpp"
+#include "agricolmap/io/text/mapped_file.hpp"
 #include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {

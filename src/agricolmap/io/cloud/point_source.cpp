@@ -26,8 +26,8 @@ T load(const std::byte* from) {
 }
 
 /// Calls `visit` with a value of the C++ type of `type`.
-template <typename simulate::Visit>
-decltype(auto) withType(ScalarType type, const simulate::Visit& visit) {
+template <typename Visit>
+decltype(auto) withType(ScalarType type, const Visit& visit) {
   switch (type) {
     case ScalarType::kInt8:
       return visit(std::int8_t{});

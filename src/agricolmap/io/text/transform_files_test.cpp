@@ -1,9 +1,9 @@
 #include <numbers>
 
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/io/test_support.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
-#include "agricolmap/io/test_support.hpp"
 
 namespace agricolmap::io {
 namespace {

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <optional>
 
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/paper/cpd/cpd_accelerate.hpp"
 #include "agricolmap/paper/cpd/cpd_fit.hpp"
 #include "agricolmap/paper/cpd/cpd_level.hpp"
-#include "agricolmap/core/error.hpp"
-#include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap::paper {
 

@@ -21,8 +21,8 @@
 #include <string_view>
 #include <vector>
 
-#include "agricolmap/map/vegetation.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/map/vegetation.hpp"
 
 namespace agricolmap::paper {
 

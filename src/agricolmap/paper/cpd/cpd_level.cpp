@@ -85,7 +85,8 @@ CpdClouds makeCpdClouds(const Points& fixed, const Points& moving, const CpdPose
   }
   for (map::VegetationPoint& p : result.moving) p.position -= result.moving_origin;
   if (weight > 0.0) {
-    const double covered = static_cast<double>(map::thinVegetation(result.fixed, kCoverSquare).size());
+    const double covered =
+        static_cast<double>(map::thinVegetation(result.fixed, kCoverSquare).size());
     result.density = weight / (covered * kCoverSquare * kCoverSquare);
     height /= weight;
     result.height_range = std::sqrt(12.0 * std::max(0.0, square / weight - height * height));

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/core/transform.hpp"
 #include "agricolmap/paper/cpd/cpd_accelerate.hpp"
 #include "agricolmap/paper/cpd/cpd_fit.hpp"
 #include "agricolmap/paper/cpd/cpd_kernel.hpp"
-#include "agricolmap/core/random.hpp"
-#include "agricolmap/core/transform.hpp"
 
 namespace agricolmap::paper {
 namespace {

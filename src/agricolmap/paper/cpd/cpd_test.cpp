@@ -15,15 +15,15 @@ namespace {
 
 using Points = std::vector<map::VegetationPoint>;
 
-struct simulate::Plant {
+struct Plant {
   Eigen::Vector2d position;
   double radius;
   double height;
 };
 
 /// Rows 0.5 m apart along x, plants about 0.18 m apart with jitter and gaps.
-std::vector<simulate::Plant> makeField(double length, double width, Random& random) {
-  std::vector<simulate::Plant> plants;
+std::vector<Plant> makeField(double length, double width, Random& random) {
+  std::vector<Plant> plants;
   for (double y = -0.5 * width; y < 0.5 * width; y += 0.5) {
     for (double x = -0.5 * length; x < 0.5 * length; x += 0.18) {
       if (random.chance(0.1)) continue;
@@ -44,10 +44,10 @@ struct Sampling {
 };
 
 /// Points of the plants inside `box`, each plant seen on its own leaves.
-Points sample(const std::vector<simulate::Plant>& plants, const map::Box2& box, const Sampling& how,
+Points sample(const std::vector<Plant>& plants, const map::Box2& box, const Sampling& how,
               Random& random) {
   Points points;
-  for (const simulate::Plant& plant : plants) {
+  for (const Plant& plant : plants) {
     if (!box.contains(plant.position) || random.chance(how.missing)) continue;
     for (int i = 0; i < static_cast<int>(how.per_plant); ++i) {
       const double radius = plant.radius * std::sqrt(random.uniform());
@@ -68,7 +68,7 @@ Points sample(const std::vector<simulate::Plant>& plants, const map::Box2& box, 
 }
 
 /// A pair with a known affine: fixed = truth · moving.
-struct report::Scene {
+struct Scene {
   Points fixed;
   Points moving;
   CpdPose truth;
@@ -82,16 +82,16 @@ CpdPose makePose(double x, double y, double yaw, double scale_x, double scale_y,
   return pose;
 }
 
-report::Scene makeScene(std::uint64_t seed, const Sampling& fixed, const Sampling& moving,
-                double length = 10.0) {
+Scene makeScene(std::uint64_t seed, const Sampling& fixed, const Sampling& moving,
+                        double length = 10.0) {
   Random random(seed);
-  const std::vector<simulate::Plant> plants = makeField(length + 3.0, 8.0, random);
-  report::Scene scene;
+  const std::vector<Plant> plants = makeField(length + 3.0, 8.0, random);
+  Scene scene;
   scene.truth =
       makePose(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(-0.3, 0.3),
                random.uniform(0.8, 1.2), random.uniform(0.8, 1.2), random.uniform(-0.2, 0.2));
   const map::Box2 wide(Eigen::Vector2d(-0.5 * length - 1.5, -4.0),
-                  Eigen::Vector2d(0.5 * length + 1.5, 4.0));
+                       Eigen::Vector2d(0.5 * length + 1.5, 4.0));
   const map::Box2 strip(Eigen::Vector2d(-0.5 * length, -1.0), Eigen::Vector2d(0.5 * length, 1.0));
   scene.fixed = sample(plants, wide, fixed, random);
   scene.moving = sample(plants, strip, moving, random);
@@ -106,7 +106,7 @@ report::Scene makeScene(std::uint64_t seed, const Sampling& fixed, const Samplin
 }
 
 /// RMS horizontal displacement over the moving points [m].
-double error(const report::Scene& scene, const CpdPose& pose) {
+double error(const Scene& scene, const CpdPose& pose) {
   double sum = 0.0;
   for (const map::VegetationPoint& p : scene.moving) {
     sum += (pose.plane * p.position - scene.truth.plane * p.position).squaredNorm();
@@ -115,7 +115,8 @@ double error(const report::Scene& scene, const CpdPose& pose) {
 }
 
 /// The truth, moved about the strip's centre by `shift` [m], `yaw` [rad] and relative `scale`.
-CpdPose disturbed(const report::Scene& scene, double shift, double yaw, double scale, Random& random) {
+CpdPose disturbed(const Scene& scene, double shift, double yaw, double scale,
+                  Random& random) {
   const auto sign = [&] { return random.chance(0.5) ? 1.0 : -1.0; };
   const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
   CpdPose pose = scene.truth;
@@ -136,7 +137,7 @@ const Sampling kRobot{60.0, 0.4, 0.2, 0.005, 0.0};
 
 TEST(Cpd, RecoversAnAffineFromANearStart) {
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
-    const report::Scene scene = makeScene(seed, kDrone, kRobot);
+    const Scene scene = makeScene(seed, kDrone, kRobot);
     Random random = Random::stream(17, seed);
     const CpdPose start = disturbed(scene, random.uniform(0.03, 0.08), 1.0 * kDegree, 0.02, random);
     const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, {});
@@ -149,7 +150,7 @@ TEST(Cpd, RecoversAnAffineFromANearStart) {
 
 TEST(Cpd, StaysPutAtTheTruth) {
   for (std::uint64_t seed = 20; seed < 26; ++seed) {
-    const report::Scene scene = makeScene(seed, kDrone, kRobot);
+    const Scene scene = makeScene(seed, kDrone, kRobot);
     const CpdResult result = refineByCpd(scene.fixed, scene.moving, scene.truth, {});
     ASSERT_TRUE(result.usable());
     EXPECT_LT(error(scene, result.pose), 0.01) << seed;
@@ -159,7 +160,7 @@ TEST(Cpd, StaysPutAtTheTruth) {
 TEST(Cpd, FindsIdenticalPointsExactly) {
   Sampling all = kDrone;
   all.missing = 0.0;
-  report::Scene scene = makeScene(3, all, kRobot);
+  Scene scene = makeScene(3, all, kRobot);
   // The moving points are the fixed ones of the strip: every sampling difference is gone.
   const Eigen::Affine2d inverse = scene.truth.plane.inverse();
   scene.moving.clear();
@@ -185,7 +186,7 @@ TEST(Cpd, DensitiesMayDiffer) {
   Sampling sparse = kRobot;
   sparse.per_plant = 8.0;
   for (const auto& [fixed, moving] : {std::pair(dense, sparse), std::pair(sparse, dense)}) {
-    const report::Scene scene = makeScene(5, fixed, moving);
+    const Scene scene = makeScene(5, fixed, moving);
     Random random(2);
     const CpdResult result = refineByCpd(scene.fixed, scene.moving,
                                          disturbed(scene, 0.05, 0.5 * kDegree, 0.015, random), {});
@@ -195,7 +196,7 @@ TEST(Cpd, DensitiesMayDiffer) {
 }
 
 TEST(Cpd, EveryModelFindsItsOwnKind) {
-  report::Scene scene = makeScene(8, kDrone, kRobot);
+  Scene scene = makeScene(8, kDrone, kRobot);
   for (const CpdModel model :
        {CpdModel::kAffine, CpdModel::kScaled, CpdModel::kSimilarity, CpdModel::kRigid}) {
     const double scale_x = model == CpdModel::kRigid ? 1.0 : 1.1;
@@ -227,7 +228,7 @@ TEST(Cpd, EveryModelFindsItsOwnKind) {
 }
 
 TEST(Cpd, FailuresAreStatuses) {
-  const report::Scene scene = makeScene(1, kDrone, kRobot);
+  const Scene scene = makeScene(1, kDrone, kRobot);
   const auto status = [&](const Points& fixed, const Points& moving, const CpdPose& start) {
     const CpdResult result = refineByCpd(fixed, moving, start, {});
     EXPECT_FALSE(result.usable());
@@ -251,7 +252,7 @@ TEST(Cpd, FailuresAreStatuses) {
 }
 
 TEST(Cpd, ALongWayIsNoRefinement) {
-  const report::Scene scene = makeScene(1, kDrone, kRobot);
+  const Scene scene = makeScene(1, kDrone, kRobot);
   CpdPose start = scene.truth;
   start.plane = Eigen::Translation2d(0.08, 0.0) * start.plane;
   CpdOptions options;
@@ -262,7 +263,7 @@ TEST(Cpd, ALongWayIsNoRefinement) {
 }
 
 TEST(Cpd, IsTheSameOnAnyNumberOfThreads) {
-  const report::Scene scene = makeScene(2, kDrone, kRobot);
+  const Scene scene = makeScene(2, kDrone, kRobot);
   Random random(2);
   const CpdPose start = disturbed(scene, 0.05, 0.5 * kDegree, 0.015, random);
   CpdResult one;
@@ -280,7 +281,7 @@ TEST(Cpd, HundredThousandPointsNeedNoMatrix) {
   fixed.per_plant = 120.0;
   Sampling moving = kRobot;
   moving.per_plant = 500.0;
-  const report::Scene scene = makeScene(4, fixed, moving, 20.0);
+  const Scene scene = makeScene(4, fixed, moving, 20.0);
   ASSERT_GT(scene.fixed.size(), 100000U);
   ASSERT_GT(scene.moving.size(), 100000U);
   Random random(2);
@@ -300,11 +301,11 @@ TEST(Cpd, DenseRowsCutByTheEdgeDoNotStretch) {
   Sampling all{250.0, 0.0, 0.0, 0.01, 0.0};
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     Random random(seed);
-    std::vector<simulate::Plant> plants = makeField(10.0, 6.0, random);
-    for (simulate::Plant& plant : plants) plant.radius *= 2.0;
+    std::vector<Plant> plants = makeField(10.0, 6.0, random);
+    for (Plant& plant : plants) plant.radius *= 2.0;
     const map::Box2 wide(Eigen::Vector2d(-4.5, -2.5), Eigen::Vector2d(4.5, 2.5));
     const map::Box2 strip(Eigen::Vector2d(-3.0, -1.0), Eigen::Vector2d(3.0, 1.0));
-    report::Scene scene;
+    Scene scene;
     scene.fixed = sample(plants, wide, all, random);
     for (map::VegetationPoint p : sample(plants, wide, all, random)) {
       if (!strip.contains(p.position)) continue;

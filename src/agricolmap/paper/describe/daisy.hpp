@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "agricolmap/paper/describe/masked_raster.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/paper/describe/masked_raster.hpp"
 
 namespace agricolmap::paper {
 

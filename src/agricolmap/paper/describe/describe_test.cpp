@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "agricolmap/paper/describe/descriptor_map.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/paper/describe/descriptor_map.hpp"
 
 namespace agricolmap::paper {
 namespace {
@@ -43,7 +43,8 @@ double waves(double row, double col) {
 constexpr auto kFlat = [](int, int) { return 0.0; };
 
 DescriptorMap describedFirst(const map::GridMap& map, const DescribeOptions& options = {}) {
-  const map::Box2 all(map.frame.corner, map.frame.corner + Eigen::Vector2d::Constant(kSide * kCell));
+  const map::Box2 all(map.frame.corner,
+                      map.frame.corner + Eigen::Vector2d::Constant(kSide * kCell));
   return describeMap(map, all, 1, options).front();
 }
 
@@ -194,7 +195,7 @@ TEST(Fpfh, EmptyCellsHaveNoPart) {
 
 TEST(DescribeMap, CropsHalvesAndFollowsTheDataTerm) {
   const map::GridMap map = mapOf([](int row, int col) { return waves(row, col); },
-                            [](int row, int col) { return 0.02 * waves(col, row); });
+                                 [](int row, int col) { return 0.02 * waves(col, row); });
   const map::Box2 part(Eigen::Vector2d(10.19, 20.41), Eigen::Vector2d(10.99, 25.0));
   const auto pyramid = describeMap(map, part, 3, {});
   ASSERT_EQ(pyramid.size(), 3U);
@@ -204,7 +205,8 @@ TEST(DescribeMap, CropsHalvesAndFollowsTheDataTerm) {
   EXPECT_NEAR(pyramid[0].frame.corner.y(), 20.40, 1e-9);
   EXPECT_EQ(pyramid[1].frame.cols, 21);
   EXPECT_NEAR(pyramid[2].frame.cell, 0.08, 1e-12);
-  EXPECT_TRUE(describeMap(map, map::Box2(Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1)), 3, {}).empty());
+  EXPECT_TRUE(
+      describeMap(map, map::Box2(Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1)), 3, {}).empty());
 
   const std::size_t middle = static_cast<std::size_t>(40) * kSide + 40;
   for (const auto& [term, bits] : {std::pair{map::DataTerm::kExgHeight, 17},
@@ -224,7 +226,7 @@ TEST(DescribeMap, CoarseDescriptorsSpanFewerCells) {
   // How many sample points lie on the map shows how far a descriptor reaches.
   const map::GridMap map = mapOf([](int row, int col) { return waves(row, col); }, kFlat);
   const map::Box2 whole(map.frame.corner,
-                   map.frame.corner + map.frame.cell * Eigen::Vector2d(kSide, kSide));
+                        map.frame.corner + map.frame.cell * Eigen::Vector2d(kSide, kSide));
   const auto known = [&](double shrink) {
     DescribeOptions options;
     options.daisy.shrink = shrink;
@@ -238,7 +240,7 @@ TEST(DescribeMap, CoarseDescriptorsSpanFewerCells) {
 
 TEST(DescribeMap, SameOnAnyNumberOfThreads) {
   const map::GridMap map = mapOf([](int row, int col) { return waves(row, col); },
-                            [](int row, int col) { return 0.02 * waves(col, row); });
+                                 [](int row, int col) { return 0.02 * waves(col, row); });
   const DescriptorMap parallel = describedFirst(map);
   const ThreadLimit limit(1);
   const DescriptorMap serial = describedFirst(map);

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "agricolmap/core/options.hpp"
 #include "agricolmap/map/data_term.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/paper/describe/aligned_vector.hpp"
 #include "agricolmap/paper/describe/daisy.hpp"
 #include "agricolmap/paper/describe/fpfh.hpp"
-#include "agricolmap/core/options.hpp"
 
 namespace agricolmap::paper {
 

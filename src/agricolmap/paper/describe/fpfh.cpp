@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "agricolmap/paper/describe/descriptor_map.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/paper/describe/descriptor_map.hpp"
 
 namespace agricolmap::paper {
 

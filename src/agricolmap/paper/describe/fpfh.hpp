@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "agricolmap/paper/describe/masked_raster.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/paper/describe/masked_raster.hpp"
 
 namespace agricolmap::paper {
 

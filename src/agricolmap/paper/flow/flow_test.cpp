@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/map/test_field.hpp"
 #include "agricolmap/map/warp.hpp"
 #include "agricolmap/paper/flow_association.hpp"
-#include "agricolmap/core/error.hpp"
-#include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap::paper {
 namespace {
@@ -21,21 +21,21 @@ map::Box2 box(double x0, double y0, double x1, double y1) {
 }
 
 /// A 12 m field of single plants; half of the leaves differ between the views.
-struct report::Scene {
+struct Scene {
   map::GridMap fixed;
   map::GridMap moving;
-  locate::SearchSpace space;
+  SearchSpace space;
 };
 
-report::Scene sceneOf(const Eigen::Affine2d& pose, const locate::PriorUncertainty& uncertainty) {
+Scene sceneOf(const Eigen::Affine2d& pose, const PriorUncertainty& uncertainty) {
   TestField field;
   field.size = 12.0;
   field.other_leaves = 0.5;
   field.noise = 0.1;
-  const evaluate::Truth above = growField(field);
+  const Truth above = growField(field);
   field.leaf_seed = 2;
-  const evaluate::Truth beside = growField(field);
-  report::Scene scene;
+  const Truth beside = growField(field);
+  Scene scene;
   scene.fixed = viewOf(above, field, box(0, 0, 12, 12), Eigen::Affine2d::Identity(), 0.05, 11);
   scene.moving = viewOf(beside, field, box(3.5, 5.0, 8.5, 7.0), pose, 0.1, 12);
   scene.space.uncertainty = uncertainty;
@@ -43,9 +43,9 @@ report::Scene sceneOf(const Eigen::Affine2d& pose, const locate::PriorUncertaint
   return scene;
 }
 
-double shareRight(const std::vector<locate::Match>& matches, const Eigen::Affine2d& pose, double limit) {
+double shareRight(const std::vector<Match>& matches, const Eigen::Affine2d& pose, double limit) {
   double right = 0.0;
-  for (const locate::Match& m : matches) right += (pose * m.moving - m.fixed).norm() <= limit ? 1.0 : 0.0;
+  for (const Match& m : matches) right += (pose * m.moving - m.fixed).norm() <= limit ? 1.0 : 0.0;
   return matches.empty() ? 0.0 : right / static_cast<double>(matches.size());
 }
 
@@ -58,7 +58,7 @@ FlowAssociationOptions plainOptions() {
 
 TEST(Flow, FindsShiftAsThePaperDoes) {
   const Eigen::Affine2d pose = guessError(kCentre, {2.0, -1.5}, 0.0, 1.0, 1.0);
-  const report::Scene scene = sceneOf(pose, {.translation = 3.0, .heading_deg = 5.0, .scale = 0.1});
+  const Scene scene = sceneOf(pose, {.translation = 3.0, .heading_deg = 5.0, .scale = 0.1});
   StageTimes times;
   const auto result =
       FlowAssociation(plainOptions()).associate(scene.fixed, scene.moving, scene.space, times);
@@ -78,11 +78,12 @@ TEST(Flow, FindsShiftAsThePaperDoes) {
 
 TEST(Flow, FindsAffineWithWarpsAndRematch) {
   const Eigen::Affine2d pose = guessError(kCentre, {-1.5, 1.0}, 0.2, 0.75, 1.25);
-  const report::Scene scene = sceneOf(pose, {.translation = 2.5, .heading_deg = 11.5, .scale = 0.3});
+  const Scene scene =
+      sceneOf(pose, {.translation = 2.5, .heading_deg = 11.5, .scale = 0.3});
   StageTimes times;
   const auto result = FlowAssociation({}).associate(scene.fixed, scene.moving, scene.space, times);
   ASSERT_FALSE(result.placements.empty());
-  const locate::Placement& best = result.placements.front();
+  const Placement& best = result.placements.front();
   EXPECT_GT(shareRight(best.matches, pose, 0.1), 0.98);
   const auto fit = fitScaledRotation(best.matches, {}, scene.space.scale_axes);
   ASSERT_TRUE(fit);
@@ -99,7 +100,7 @@ TEST(Flow, FindsAffineWithWarpsAndRematch) {
 
 TEST(Flow, SameOnAnyNumberOfThreads) {
   const Eigen::Affine2d pose = guessError(kCentre, {0.5, -0.4}, 0.05, 1.05, 0.95);
-  const report::Scene scene = sceneOf(pose, {.translation = 1.0, .heading_deg = 4.0, .scale = 0.1});
+  const Scene scene = sceneOf(pose, {.translation = 1.0, .heading_deg = 4.0, .scale = 0.1});
   const auto run = [&](int seed) {
     FlowAssociationOptions options;
     options.seed = seed;
@@ -109,7 +110,7 @@ TEST(Flow, SameOnAnyNumberOfThreads) {
   const auto same = [](const locate::AssociationResult& a, const locate::AssociationResult& b) {
     return a.all_matches.size() == b.all_matches.size() &&
            std::equal(a.all_matches.begin(), a.all_matches.end(), b.all_matches.begin(),
-                      [](const locate::Match& m, const locate::Match& n) {
+                      [](const Match& m, const Match& n) {
                         return m.moving == n.moving && m.fixed == n.fixed;
                       });
   };
@@ -120,7 +121,7 @@ TEST(Flow, SameOnAnyNumberOfThreads) {
 }
 
 TEST(Flow, NothingWhereTheMapsDoNotMeet) {
-  report::Scene scene = sceneOf(Eigen::Affine2d::Identity(), {.translation = 1.0});
+  Scene scene = sceneOf(Eigen::Affine2d::Identity(), {.translation = 1.0});
   scene.moving.frame.corner += Eigen::Vector2d(100.0, 0.0);
   scene.space.centre += Eigen::Vector2d(100.0, 0.0);
   StageTimes times;
@@ -133,7 +134,7 @@ TEST(Flow, NothingWhereTheMapsDoNotMeet) {
 }
 
 TEST(Reach, SamplesStayInTheBoxes) {
-  locate::SearchSpace space;
+  SearchSpace space;
   space.centre = {10.0, 5.0};
   space.scale_axes = rotation2(0.4);
   const Reach reach(space);
@@ -218,7 +219,7 @@ TEST(MatchCost, WeighsEachDescriptorByItsOwnSpread) {
 }
 
 TEST(Warp, MovesWhatTheMapShows) {
-  const report::Scene scene = sceneOf(Eigen::Affine2d::Identity(), {});
+  const Scene scene = sceneOf(Eigen::Affine2d::Identity(), {});
   const Eigen::Affine2d warp = guessError(kCentre, {0.3, 0.1}, 0.2, 1.1, 0.9);
   const map::GridMap map = map::warped(scene.moving, warp);
   double difference = 0.0;

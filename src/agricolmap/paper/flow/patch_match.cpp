@@ -34,7 +34,7 @@ std::uint64_t mixed(std::uint64_t seed, std::uint64_t item) {
 }
 
 /// A displacement and what it costs.
-struct locate::Candidate {
+struct Candidate {
   Eigen::Vector2d displacement;
   float cost = MatchCost::kImpossible;
 };
@@ -67,10 +67,10 @@ struct Trial {
 /// Seeds that search in step. Cells are read in no order from maps far larger than the caches;
 /// fetching those of all seeds before the first is compared hides most of the waiting.
 constexpr std::size_t kTogether = 16;
-struct map::Block {
+struct Block {
   std::size_t count = 0;
   std::array<std::size_t, kTogether> seed{};
-  std::array<locate::Candidate, kTogether> best{};
+  std::array<Candidate, kTogether> best{};
   std::array<Trial, kTogether> trial{};
 };
 
@@ -129,7 +129,7 @@ class Matcher {
   void forBlocks(const FlowField& from, const Body& body) {
     parallelFor((active_.size() + kTogether - 1) / kTogether,
                 [&](std::size_t b) {
-                  map::Block block;
+                  Block block;
                   block.count = std::min(kTogether, active_.size() - b * kTogether);
                   for (std::size_t k = 0; k < block.count; ++k) {
                     const std::size_t i = active_[b * kTogether + k];
@@ -147,7 +147,7 @@ class Matcher {
 
   /// Tries for every seed of a block what `displacement(k)` gives, if anything.
   template <typename Displacement>
-  void tryEach(map::Block& block, const Displacement& displacement) {
+  void tryEach(Block& block, const Displacement& displacement) {
     for (std::size_t k = 0; k < block.count; ++k) {
       const std::optional<Eigen::Vector2d> d = displacement(k);
       block.trial[k] = d ? propose(block.seed[k], *d) : Trial{};
@@ -162,15 +162,16 @@ class Matcher {
   double cell() const { return fixed_[level_].frame.cell; }
 
   /// A cell of a map; no index where a point lies outside.
-  struct simulate::Cell {
+  struct Cell {
     int row;
     int col;
     std::ptrdiff_t index = -1;
   };
 
-  static simulate::Cell cellAt(const DescriptorMap& map, const Eigen::Vector2d& point) {
+  static Cell cellAt(const DescriptorMap& map, const Eigen::Vector2d& point) {
     const Eigen::Vector2d local = (point - map.frame.corner) / map.frame.cell;
-    simulate::Cell cell{static_cast<int>(std::floor(local.y())), static_cast<int>(std::floor(local.x()))};
+    Cell cell{static_cast<int>(std::floor(local.y())),
+                        static_cast<int>(std::floor(local.x()))};
     if (cell.col >= 0 && cell.row >= 0 && cell.col < map.frame.cols && cell.row < map.frame.rows) {
       cell.index = static_cast<std::ptrdiff_t>(map.index(cell.row, cell.col));
     }
@@ -188,7 +189,7 @@ class Matcher {
   /// What is left to compare of a displacement; asks for its cell.
   Trial propose(std::size_t i, const Eigen::Vector2d& displacement) {
     if (!reachable_[i].contains(displacement)) return {};
-    const simulate::Cell to = cellAt(target(), seeds_.position[i] + displacement);
+    const Cell to = cellAt(target(), seeds_.position[i] + displacement);
     if (to.index < 0) return {};
     const auto index = static_cast<std::size_t>(to.index);
     if (!tried_[i].first(to.row, to.col, index)) return {};
@@ -196,13 +197,13 @@ class Matcher {
     return {displacement, to.index};
   }
 
-  void settle(std::size_t i, const Trial& trial, locate::Candidate& best) const {
+  void settle(std::size_t i, const Trial& trial, Candidate& best) const {
     if (trial.cell < 0) return;
     const float cost = costOf(i, trial.cell, best.cost);
     if (cost < best.cost) best = {trial.displacement, cost};
   }
 
-  void improve(std::size_t i, const Eigen::Vector2d& displacement, locate::Candidate& best) {
+  void improve(std::size_t i, const Eigen::Vector2d& displacement, Candidate& best) {
     settle(i, propose(i, displacement), best);
   }
 
@@ -215,7 +216,7 @@ class Matcher {
       source_cell_[i] = cellAt(source(), seeds_.position[i]).index;
       tried_[i].forget();
       if (field_.cost[i] < MatchCost::kImpossible) {
-        const simulate::Cell to = cellAt(target(), seeds_.position[i] + field_.displacement[i]);
+        const Cell to = cellAt(target(), seeds_.position[i] + field_.displacement[i]);
         field_.cost[i] = costOf(i, to.index, std::numeric_limits<float>::infinity());
         if (to.index >= 0) tried_[i].first(to.row, to.col, static_cast<std::size_t>(to.index));
       }
@@ -224,7 +225,7 @@ class Matcher {
 
   void start() {
     const FlowField nothing = field_;
-    forBlocks(nothing, [&](map::Block& block) {
+    forBlocks(nothing, [&](Block& block) {
       std::array<std::optional<Random>, kTogether> random;
       for (std::size_t k = 0; k < block.count; ++k) {
         random[k] = Random::stream(seed_, block.seed[k]);
@@ -243,14 +244,14 @@ class Matcher {
   void iterate(int stride, bool coarsest, std::uint64_t iteration_seed) {
     // Both hold the same where no seed is active.
     std::swap(field_, old_);
-    forBlocks(old_, [&](map::Block& block) {
+    forBlocks(old_, [&](Block& block) {
       propagate(stride, block);
       searchAround(coarsest, iteration_seed, block);
     });
   }
 
   /// What the neighbours in the lattice had after the iteration before.
-  void propagate(int stride, map::Block& block) {
+  void propagate(int stride, Block& block) {
     const std::array<std::array<int, 2>, 4> steps = {
         {{-stride, 0}, {stride, 0}, {0, -stride}, {0, stride}}};
     for (const auto& step : steps) {
@@ -267,7 +268,7 @@ class Matcher {
   }
 
   /// Random steps from the best so far, each half as far as the one before.
-  void searchAround(bool coarsest, std::uint64_t iteration_seed, map::Block& block) {
+  void searchAround(bool coarsest, std::uint64_t iteration_seed, Block& block) {
     std::array<std::optional<Random>, kTogether> random;
     std::array<double, kTogether> radius{};
     for (std::size_t k = 0; k < block.count; ++k) {
@@ -296,9 +297,9 @@ class Matcher {
       const Eigen::Vector2d& p = seeds_.position[i];
       const GridFrame& frame = target().frame;
       const Eigen::Vector2d place = frame.cellOf(p + field_.displacement[i]).array().round();
-      locate::Candidate best{frame.centre(place.y(), place.x()) - p, field_.cost[i]};
+      Candidate best{frame.centre(place.y(), place.x()) - p, field_.cost[i]};
       for (bool better = true; better;) {
-        const locate::Candidate from = best;
+        const Candidate from = best;
         for (int k = 0; k < 9; ++k) {
           improve(i, from.displacement + cell() * Eigen::Vector2d(k % 3 - 1, k / 3 - 1), best);
         }
@@ -319,8 +320,8 @@ class Matcher {
   std::size_t level_ = 0;
   std::optional<MatchCost> cost_;
   std::vector<std::ptrdiff_t> source_cell_;
-  std::vector<map::Box2> reachable_;      ///< of displacements
-  std::vector<std::size_t> active_;  ///< seeds that take part
+  std::vector<map::Box2> reachable_;  ///< of displacements
+  std::vector<std::size_t> active_;   ///< seeds that take part
   std::vector<Tried> tried_;
   FlowField field_;
   FlowField old_;  ///< of the iteration before
@@ -350,7 +351,7 @@ FlowField matchSeeds(const Pyramid& fixed, const Pyramid& moving, const SeedLatt
   return Matcher(fixed, moving, seeds, reach, direction, options, seed).run(cost);
 }
 
-std::vector<locate::Match> matchMaps(const Pyramid& fixed, const Pyramid& moving, const SeedLattice& seeds,
+std::vector<Match> matchMaps(const Pyramid& fixed, const Pyramid& moving, const SeedLattice& seeds,
                              const Reach& reach, const CostOptions& cost,
                              const FlowOptions& options, std::uint64_t seed) {
   const FlowField flow =
@@ -366,7 +367,7 @@ std::vector<locate::Match> matchMaps(const Pyramid& fixed, const Pyramid& moving
         matchSeeds(fixed, moving, ends, reach, Direction::kBackward, cost, options, mixed(seed, 1));
   }
   const double limit = options.closure * moving.front().frame.cell;
-  std::vector<locate::Match> matches;
+  std::vector<Match> matches;
   for (std::size_t i = 0; i < ends.position.size(); ++i) {
     if (ends.active[i] == 0) continue;
     if (options.closure > 0.0) {

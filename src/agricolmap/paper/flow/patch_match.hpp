@@ -52,7 +52,7 @@ FlowField matchSeeds(const Pyramid& fixed, const Pyramid& moving, const SeedLatt
                      const FlowOptions& options, std::uint64_t seed);
 
 /// Forward flow of the moving map's lattice with the seeds that a backward flow confirms.
-std::vector<locate::Match> matchMaps(const Pyramid& fixed, const Pyramid& moving, const SeedLattice& seeds,
+std::vector<Match> matchMaps(const Pyramid& fixed, const Pyramid& moving, const SeedLattice& seeds,
                              const Reach& reach, const CostOptions& cost,
                              const FlowOptions& options, std::uint64_t seed);
 

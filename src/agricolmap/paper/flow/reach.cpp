@@ -8,7 +8,7 @@
 
 namespace agricolmap::paper {
 
-Reach::Reach(const locate::SearchSpace& space, const Eigen::Affine2d& warp)
+Reach::Reach(const SearchSpace& space, const Eigen::Affine2d& warp)
     : space_(space),
       warp_(warp),
       unwarp_(warp.inverse()),
@@ -16,7 +16,7 @@ Reach::Reach(const locate::SearchSpace& space, const Eigen::Affine2d& warp)
   // The image is linear in the scales and nearly so in the yaw: corners and centre span it; wide
   // headings need the steps between.
   const int steps = std::max(2, static_cast<int>(std::ceil(2.0 * yaw_ / 0.2)));
-  const double widest = std::exp(locate::logScaleLimit(space_.uncertainty));
+  const double widest = std::exp(logScaleLimit(space_.uncertainty));
   for (int i = 0; i <= steps; ++i) {
     const double yaw = -yaw_ + 2.0 * yaw_ * i / steps;
     for (const double scale_x : {1.0 / widest, widest}) {
@@ -34,7 +34,7 @@ Eigen::Matrix2d Reach::linear(double yaw, double scale_x, double scale_y) const 
 }
 
 Eigen::Matrix2d Reach::randomLinear(Random& random) const {
-  const double spread = locate::logScaleLimit(space_.uncertainty);
+  const double spread = logScaleLimit(space_.uncertainty);
   const double yaw = random.uniform(-yaw_, yaw_);
   const double scale_x = std::exp(random.uniform(-spread, spread));
   const double scale_y = std::exp(random.uniform(-spread, spread));

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "agricolmap/locate/association.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/locate/association.hpp"
 
 namespace agricolmap::paper {
 
@@ -14,7 +14,7 @@ namespace agricolmap::paper {
 /// Where the moving map was warped before it is matched, its points q' = warp·q stand for q.
 class Reach {
  public:
-  explicit Reach(const locate::SearchSpace& space,
+  explicit Reach(const SearchSpace& space,
                  const Eigen::Affine2d& warp = Eigen::Affine2d::Identity());
 
   /// Fixed point of moving point `q` under a random allowed map.
@@ -39,7 +39,7 @@ class Reach {
     Eigen::Matrix2d inverse;
   };
 
-  locate::SearchSpace space_;
+  SearchSpace space_;
   Eigen::Affine2d warp_;
   Eigen::Affine2d unwarp_;
   double yaw_;

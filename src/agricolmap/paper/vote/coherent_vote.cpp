@@ -37,13 +37,13 @@ struct Pairs {
   Eigen::Vector2d half_extent;  ///< of q along the axes [m]
 };
 
-Pairs pairsOf(std::span<const locate::Match> matches, const Eigen::Matrix2d& axes) {
+Pairs pairsOf(std::span<const Match> matches, const Eigen::Matrix2d& axes) {
   Pairs pairs;
-  map::Box2 box;
-  for (const locate::Match& match : matches) box.extend(axes.transpose() * match.moving);
+  Eigen::AlignedBox2d box;
+  for (const Match& match : matches) box.extend(axes.transpose() * match.moving);
   pairs.pivot = axes * box.center();
   pairs.half_extent = 0.5 * box.sizes();
-  for (const locate::Match& match : matches) {
+  for (const Match& match : matches) {
     const Eigen::Vector2f q = (match.moving - pairs.pivot).cast<float>();
     const Eigen::Vector2f p = (match.fixed - pairs.pivot).cast<float>();
     pairs.qx.push_back(q.x());
@@ -54,7 +54,7 @@ Pairs pairsOf(std::span<const locate::Match> matches, const Eigen::Matrix2d& axe
   return pairs;
 }
 
-struct locate::Hypothesis {
+struct Hypothesis {
   double yaw;
   Eigen::Vector2d scale;
 };
@@ -67,14 +67,14 @@ std::vector<double> lattice(double limit, double step) {
   return values;
 }
 
-std::vector<locate::Hypothesis> hypotheses(const locate::PriorUncertainty& u, const Eigen::Vector2d& half_extent,
-                                   double step) {
+std::vector<Hypothesis> hypotheses(const PriorUncertainty& u,
+                                           const Eigen::Vector2d& half_extent, double step) {
   const auto stepFor = [&](double arm) { return step / std::max(arm, step); };
-  std::vector<locate::Hypothesis> result;
+  std::vector<Hypothesis> result;
   const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0;
   for (const double yaw : lattice(yaw_limit, stepFor(half_extent.norm()))) {
-    for (const double x : lattice(locate::logScaleLimit(u), stepFor(half_extent.x()))) {
-      for (const double y : lattice(locate::logScaleLimit(u), stepFor(half_extent.y()))) {
+    for (const double x : lattice(logScaleLimit(u), stepFor(half_extent.x()))) {
+      for (const double y : lattice(logScaleLimit(u), stepFor(half_extent.y()))) {
         result.push_back({yaw, Eigen::Vector2d(std::exp(x), std::exp(y))});
       }
     }
@@ -82,7 +82,7 @@ std::vector<locate::Hypothesis> hypotheses(const locate::PriorUncertainty& u, co
   return result;
 }
 
-Eigen::Matrix2d linearOf(const locate::Hypothesis& h, const Eigen::Matrix2d& axes) {
+Eigen::Matrix2d linearOf(const Hypothesis& h, const Eigen::Matrix2d& axes) {
   return rotation2(h.yaw) * axes * h.scale.asDiagonal() * axes.transpose();
 }
 
@@ -96,7 +96,7 @@ struct Peak {
 /// Votes of all matches for the pivot's displacement under one linear map.
 class ShiftVote {
  public:
-  ShiftVote(const Pairs& pairs, const map::Box2& window, double bin)
+  ShiftVote(const Pairs& pairs, const Eigen::AlignedBox2d& window, double bin)
       : pairs_(pairs), corner_(window.min().cast<float>()), bin_(static_cast<float>(bin)) {
     const Eigen::Array2d count = (window.sizes().array() / bin).min(kWidestBins);
     cols_ = static_cast<int>(count.x()) + 2;
@@ -193,7 +193,7 @@ double farthestCorner(const Eigen::Affine2d& a, const Eigen::Affine2d& b, const 
   return farthest;
 }
 
-std::vector<std::uint32_t> within(std::span<const locate::Match> matches, const Eigen::Affine2d& pose,
+std::vector<std::uint32_t> within(std::span<const Match> matches, const Eigen::Affine2d& pose,
                                   double radius) {
   std::vector<std::uint32_t> result;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -205,11 +205,11 @@ std::vector<std::uint32_t> within(std::span<const locate::Match> matches, const 
 }
 
 /// Alternates selection within a shrinking radius and weighted fits (Tukey's biweight).
-VotedPlacement drawIn(std::span<const locate::Match> matches, const Eigen::Affine2d& start,
+VotedPlacement drawIn(std::span<const Match> matches, const Eigen::Affine2d& start,
                       const Eigen::Matrix2d& axes, double wide, double tolerance) {
   VotedPlacement placement;
   Eigen::Affine2d pose = start;
-  std::vector<locate::Match> chosen;
+  std::vector<Match> chosen;
   std::vector<double> weights;
   for (int step = 0; step < kDrawSteps; ++step) {
     const double radius = std::max(tolerance, wide * std::pow(0.7, step));
@@ -229,34 +229,34 @@ VotedPlacement drawIn(std::span<const locate::Match> matches, const Eigen::Affin
   return placement;
 }
 
-double yawLimit(const locate::PriorUncertainty& u) { return u.heading_deg * std::numbers::pi / 180.0; }
+double yawLimit(const PriorUncertainty& u) { return u.heading_deg * std::numbers::pi / 180.0; }
 
 /// True inside what the initial guess allows, with a little play for the fit.
-bool allowed(const ScaledRotation& pose, const locate::PriorUncertainty& u) {
+bool allowed(const ScaledRotation& pose, const PriorUncertainty& u) {
   return std::abs(pose.yaw) <= yawLimit(u) + 0.05 &&
-         pose.scale.array().log().abs().maxCoeff() <= locate::logScaleLimit(u) + 0.05;
+         pose.scale.array().log().abs().maxCoeff() <= logScaleLimit(u) + 0.05;
 }
 
 /// The best-supported placement of some matches; no inliers when nothing is supported.
-VotedPlacement bestPlacement(std::span<const locate::Match> matches, const locate::SearchSpace& space,
+VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& space,
                              const Eigen::Matrix2d& axes, double unit, const VoteOptions& options) {
   const double bin = options.coarse * unit;
   const Pairs pairs = pairsOf(matches, axes);
-  const std::vector<locate::Hypothesis> all = hypotheses(space.uncertainty, pairs.half_extent, bin);
+  const std::vector<Hypothesis> all = hypotheses(space.uncertainty, pairs.half_extent, bin);
   // The pivot moves by the translation plus what heading and scales do to its arm from the centre.
   const double arm = (pairs.pivot - space.centre).norm();
   const double reach = space.uncertainty.translation +
-                       arm * (std::expm1(locate::logScaleLimit(space.uncertainty)) +
+                       arm * (std::expm1(logScaleLimit(space.uncertainty)) +
                               std::min(2.0, yawLimit(space.uncertainty))) +
                        bin;
-  const map::Box2 window(Eigen::Vector2d::Constant(-reach), Eigen::Vector2d::Constant(reach));
+  const Eigen::AlignedBox2d window(Eigen::Vector2d::Constant(-reach), Eigen::Vector2d::Constant(reach));
   const ShiftVote vote(pairs, window, bin);
   std::vector<Peak> peaks(all.size());
   parallelFor(
       all.size(),
       [&](std::size_t i) {
         thread_local ShiftVote::Scratch scratch;
-        peaks[i] = vote.vote(locate::linearOf(all[i], axes), scratch);
+        peaks[i] = vote.vote(linearOf(all[i], axes), scratch);
         peaks[i].hypothesis = i;
       },
       8);
@@ -267,7 +267,7 @@ VotedPlacement bestPlacement(std::span<const locate::Match> matches, const locat
   for (const Peak& peak : peaks) {
     if (starts.size() == kCandidates || peak.votes < options.least) break;
     Eigen::Affine2d pose;
-    pose.linear() = locate::linearOf(all[peak.hypothesis], axes);
+    pose.linear() = linearOf(all[peak.hypothesis], axes);
     pose.translation() = pairs.pivot + peak.shift - pose.linear() * pairs.pivot;
     const bool known = std::any_of(starts.begin(), starts.end(), [&](const Eigen::Affine2d& s) {
       return farthestCorner(s, pose, pairs, axes) < 3.0 * bin;
@@ -290,12 +290,12 @@ VotedPlacement bestPlacement(std::span<const locate::Match> matches, const locat
 
 }  // namespace
 
-std::vector<VotedPlacement> voteCoherent(std::span<const locate::Match> matches, const locate::SearchSpace& space,
+std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
                                          double cell, const VoteOptions& options) {
   checkOptions(options);
   const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
   // The next placement is sought among the matches that those before leave unexplained.
-  std::vector<locate::Match> left(matches.begin(), matches.end());
+  std::vector<Match> left(matches.begin(), matches.end());
   std::vector<std::uint32_t> index(matches.size());
   std::iota(index.begin(), index.end(), 0U);
   std::vector<VotedPlacement> result;

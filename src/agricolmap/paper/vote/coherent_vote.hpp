@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "agricolmap/core/options.hpp"
 #include "agricolmap/core/scaled_rotation.hpp"
+#include "agricolmap/core/search_space.hpp"
 
 namespace agricolmap::paper {
 
@@ -32,7 +34,7 @@ struct VotedPlacement {
 /// lattice over what the initial guess allows, with steps that move no match by more than half of
 /// `coarse`, votes for a displacement; the fullest bins are then drawn in to `tolerance` by
 /// alternating closed-form fits and selection. `cell` is t_f's unit [m].
-std::vector<VotedPlacement> voteCoherent(std::span<const locate::Match> matches, const locate::SearchSpace& space,
+std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
                                          double cell, const VoteOptions& options);
 
 }  // namespace agricolmap::paper

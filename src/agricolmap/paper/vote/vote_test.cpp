@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "agricolmap/paper/vote/coherent_vote.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
+#include "agricolmap/paper/vote/coherent_vote.hpp"
 
 namespace agricolmap::paper {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr double kCell = 0.02;
 
 struct Flow {
-  std::vector<locate::Match> matches;
+  std::vector<Match> matches;
   std::vector<bool> right;
 };
 
@@ -49,8 +49,8 @@ Eigen::Affine2d poseOf(double yaw_deg, double sx, double sy, const Eigen::Matrix
   return pose;
 }
 
-locate::SearchSpace paperSpace() {
-  locate::SearchSpace space;
+SearchSpace paperSpace() {
+  SearchSpace space;
   space.centre = {5.0, 1.1};
   return space;
 }
@@ -58,8 +58,8 @@ locate::SearchSpace paperSpace() {
 TEST(CoherentVote, KeepsWholeStripUnderPaperErrors) {
   for (const double sign : {-1.0, 1.0}) {
     for (const double outliers : {0.6, 0.85, 0.9}) {
-      const Eigen::Affine2d pose =
-          locate::poseOf(11.5 * sign, 1.0 + 0.3 * sign, 1.0 - 0.3 * sign, Eigen::Matrix2d::Identity());
+      const Eigen::Affine2d pose = poseOf(11.5 * sign, 1.0 + 0.3 * sign, 1.0 - 0.3 * sign,
+                                                  Eigen::Matrix2d::Identity());
       const Flow flow = stripFlow(pose, outliers, 7);
       const auto placements = voteCoherent(flow.matches, paperSpace(), kCell, {});
       ASSERT_FALSE(placements.empty());
@@ -77,9 +77,9 @@ TEST(CoherentVote, KeepsWholeStripUnderPaperErrors) {
 }
 
 TEST(CoherentVote, ScalesActAlongTheGivenAxes) {
-  locate::SearchSpace space = paperSpace();
+  SearchSpace space = paperSpace();
   space.scale_axes = rotation2(0.5);
-  const Eigen::Affine2d pose = locate::poseOf(-5.0, 1.25, 0.8, space.scale_axes);
+  const Eigen::Affine2d pose = poseOf(-5.0, 1.25, 0.8, space.scale_axes);
   const Flow flow = stripFlow(pose, 0.8, 3);
   const auto placements = voteCoherent(flow.matches, space, kCell, {});
   ASSERT_FALSE(placements.empty());
@@ -88,10 +88,10 @@ TEST(CoherentVote, ScalesActAlongTheGivenAxes) {
 }
 
 TEST(CoherentVote, ReturnsDistinctPlacementsBestFirst) {
-  const Eigen::Affine2d pose = locate::poseOf(3.0, 1.1, 0.9, Eigen::Matrix2d::Identity());
+  const Eigen::Affine2d pose = poseOf(3.0, 1.1, 0.9, Eigen::Matrix2d::Identity());
   Flow flow = stripFlow(pose, 0.0, 5);
   Random random(9);
-  for (locate::Match& match : flow.matches) {
+  for (Match& match : flow.matches) {
     const double draw = random.uniform();
     if (draw < 0.3) match.fixed += Eigen::Vector2d(0.0, 0.5);  // one row off
     if (draw > 0.8) match.fixed += Eigen::Vector2d(1.0, 0.0);  // five plants off
@@ -118,7 +118,7 @@ TEST(CoherentVote, FindsNothingInNoiseAndNothingInNothing) {
 }
 
 TEST(CoherentVote, SameOnAnyNumberOfThreads) {
-  const Flow flow = stripFlow(locate::poseOf(8.0, 0.8, 1.2, Eigen::Matrix2d::Identity()), 0.85, 4);
+  const Flow flow = stripFlow(poseOf(8.0, 0.8, 1.2, Eigen::Matrix2d::Identity()), 0.85, 4);
   const auto parallel = voteCoherent(flow.matches, paperSpace(), kCell, {});
   const ThreadLimit limit(1);
   const auto serial = voteCoherent(flow.matches, paperSpace(), kCell, {});

@@ -79,7 +79,7 @@ MapLayer::MapLayer(const map::GridMap& map, PictureValue value) : map_(map) {
   levels_.push_back(finestLevel(map, values));
   while (std::max(levels_.back().frame.rows, levels_.back().frame.cols) >= 2 * kSmallest ||
          levels_.size() <= kFillLevels) {
-    levels_.push_back(paper::halved(levels_.back()));
+    levels_.push_back(halved(levels_.back()));
   }
   for (std::size_t i = 0; i < levels_.size(); ++i) fillGaps(levels_, i);
   const std::size_t step = 1 + map.weight.size() / kSamples;

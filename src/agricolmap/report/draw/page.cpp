@@ -63,7 +63,8 @@ Page::Page(int content_height, const std::string& title, const std::string& subt
   if (lines.empty()) return;
   canvas.fill({0, kHeader, kPageWidth, bannerHeight(lines.size()) - kGap}, palette::kBad);
   double y = kHeader + 20.0;
-  canvas.text({kMargin, y}, verdict.status == verdict::Status::kAmbiguous ? "AMBIGUOUS" : "REJECTED",
+  canvas.text({kMargin, y},
+              verdict.status == verdict::Status::kAmbiguous ? "AMBIGUOUS" : "REJECTED",
               {17.0, hexColour(0xffffff), true, Align::kLeft});
   for (const std::string& line : lines) {
     canvas.text({kMargin + 145.0, y}, line, kBannerText);

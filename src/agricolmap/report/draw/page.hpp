@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/verdict/verdict.hpp"
 #include "agricolmap/report/draw/picture_canvas.hpp"
 #include "agricolmap/report/draw/view.hpp"
+#include "agricolmap/verdict/verdict.hpp"
 
 namespace agricolmap::report {
 

@@ -63,7 +63,8 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::G
   return json;
 }
 
-Json transformJson(const Cloud& fixed, const Cloud& moving, const pipeline::Registration& registration) {
+Json transformJson(const Cloud& fixed, const Cloud& moving,
+                   const pipeline::Registration& registration) {
   if (!registration.has_transform) return nullptr;
   Json json;
   json["matrix"] = matrixJson(registration.fixed_from_moving.matrix());
@@ -87,10 +88,10 @@ Json transformJson(const Cloud& fixed, const Cloud& moving, const pipeline::Regi
 /// Root mean square distance of the matches behind the pose from where the pose puts them [m].
 double matchResidual(const pipeline::Registration& registration) {
   double best = std::numeric_limits<double>::quiet_NaN();
-  for (const locate::Placement& placement : registration.association.placements) {
+  for (const Placement& placement : registration.association.placements) {
     if (placement.matches.empty()) continue;
     double sum = 0.0;
-    for (const locate::Match& match : placement.matches) {
+    for (const Match& match : placement.matches) {
       sum += (registration.pose * match.moving - match.fixed).squaredNorm();
     }
     const double rms = std::sqrt(sum / static_cast<double>(placement.matches.size()));
@@ -215,7 +216,8 @@ std::size_t threadsInForce(int asked) {
 }  // namespace
 
 nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
-                                        const pipeline::Registration& registration, const StageTimes& times,
+                                        const pipeline::Registration& registration,
+                                        const StageTimes& times,
                                         const RegistrationReportInfo& info) {
   Json json;
   json["format"] = "agricolmap-registration";

@@ -32,7 +32,8 @@ struct RegistrationReportInfo {
 /// The report; numbers are doubles to the last digit, what is not finite is null. All strings are
 /// valid UTF-8.
 nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
-                                        const pipeline::Registration& registration, const StageTimes& times,
+                                        const pipeline::Registration& registration,
+                                        const StageTimes& times,
                                         const RegistrationReportInfo& info);
 
 /// Writes it, indented. Throws OutputError.

@@ -50,7 +50,7 @@ void paintDim(PictureCanvas& canvas, const Scene& scene, const View& view) {
 std::size_t stride(std::size_t size, std::size_t limit) { return (size + limit - 1) / limit; }
 
 /// Ends of the lines of some matches, evenly through the list (which is ordered by place).
-std::vector<Eigen::Vector2d> lineEnds(const std::vector<locate::Match>& matches, std::size_t limit,
+std::vector<Eigen::Vector2d> lineEnds(const std::vector<Match>& matches, std::size_t limit,
                                       const View& view) {
   std::vector<Eigen::Vector2d> ends;
   for (std::size_t i = 0; i < matches.size(); i += stride(matches.size(), limit)) {
@@ -63,7 +63,7 @@ std::vector<Eigen::Vector2d> lineEnds(const std::vector<locate::Match>& matches,
 void drawMatches(PictureCanvas& canvas, const Scene& scene, const View& view) {
   canvas.lines(lineEnds(scene.registration.association.all_matches, kMaxMatches, view),
                {1.0, kMatchColour, {}});
-  const locate::Placement* winner = scene.registration.has_transform ? scene.winner() : nullptr;
+  const Placement* winner = scene.registration.has_transform ? scene.winner() : nullptr;
   if (winner == nullptr) return;
   const auto ends = lineEnds(winner->matches, kMaxWinners, view);
   canvas.lines(ends, {1.4, kWinnerColour, {}});
@@ -117,7 +117,7 @@ void drawSidebar(PictureCanvas& canvas, const Scene& scene, int x, int top) {
                      matchText(result.association.all_matches.size(), kMaxMatches, "matches"),
                      {}});
   }
-  const locate::Placement* winner = result.has_transform ? scene.winner() : nullptr;
+  const Placement* winner = result.has_transform ? scene.winner() : nullptr;
   if (winner != nullptr) {
     items.push_back({LegendItem::Kind::kLine,
                      kWinnerColour,

@@ -94,7 +94,8 @@ class OverlayPainter {
 
   void drawOverview(const PixelRect& rect) {
     const GridFrame& frame = scene_.fixed.map().frame;
-    map::Box2 box(frame.corner, frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows));
+    map::Box2 box(frame.corner,
+                  frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows));
     for (const Eigen::Vector2d& corner : scene_.outlineUnder(pose_)) box.extend(corner);
     const View view = fitView(rect, {box.center(), Eigen::Matrix2d::Identity(), 0.5 * box.sizes()});
     paint(view);

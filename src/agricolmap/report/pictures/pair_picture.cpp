@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/report/pictures/cloud_photo.hpp"
 #include "agricolmap/report/draw/outline.hpp"
 #include "agricolmap/report/draw/page.hpp"
+#include "agricolmap/report/pictures/cloud_photo.hpp"
 
 namespace agricolmap::report {
 namespace {

@@ -35,7 +35,8 @@ std::vector<std::string> pictureNames() {
   return names;
 }
 
-std::vector<std::string> writePictures(const io::OutputPath& dir, const pipeline::Registration& registration,
+std::vector<std::string> writePictures(const io::OutputPath& dir,
+                                       const pipeline::Registration& registration,
                                        const PictureInfo& info) {
   const Scene scene(registration, info);
   std::vector<const Kind*> chosen;

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/verdict/evidence.hpp"
 #include "agricolmap/io/output/output_path.hpp"
 #include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/verdict/evidence.hpp"
 
 namespace agricolmap::report {
 
@@ -14,7 +14,7 @@ namespace agricolmap::report {
 struct PictureInfo {
   std::string fixed_name = "fixed map";    ///< the cloud's, as the user gave it
   std::string moving_name = "moving map";  ///< likewise
-  verdict::EvidenceOptions evidence;                ///< those the registration was judged with
+  verdict::EvidenceOptions evidence;       ///< those the registration was judged with
 };
 
 /// Names of all files that writePictures may write, e.g. to clear those of an earlier run.
@@ -26,7 +26,8 @@ std::vector<std::string> pictureNames();
 ///  - overlay_before.png, overlay_after.png: both maps in complementary colours,
 ///  - blocks.png: what the blocks of the moving map say when placed alone.
 /// Without a transform only the first two. Throws OutputError.
-std::vector<std::string> writePictures(const io::OutputPath& dir, const pipeline::Registration& registration,
+std::vector<std::string> writePictures(const io::OutputPath& dir,
+                                       const pipeline::Registration& registration,
                                        const PictureInfo& info = {});
 
 }  // namespace agricolmap::report

@@ -12,8 +12,8 @@
 #include "agricolmap/report/draw/picture_canvas.hpp"
 #include "agricolmap/report/draw/png_file.hpp"
 #include "agricolmap/report/draw/test_picture.hpp"
-#include "agricolmap/report/test_registration.hpp"
 #include "agricolmap/report/draw/utf8.hpp"
+#include "agricolmap/report/test_registration.hpp"
 
 namespace agricolmap::report {
 namespace {
@@ -106,7 +106,8 @@ TEST_F(Pictures, WithoutATransformOnlyMapsAndGuess) {
 TEST_F(Pictures, StripsOfAnyShapeAndDirection) {
   for (const double heading : {1.5707963, 2.6}) {
     for (const double width : {0.4, 2.4, 4.0}) {
-      const pipeline::Registration registration = testing::testRegistration({7.0, 4.0, width, heading});
+      const pipeline::Registration registration =
+          testing::testRegistration({7.0, 4.0, width, heading});
       for (const std::string& name : writePictures(dir_, registration, kInfo)) {
         const Picture picture(dir_ / name);
         ASSERT_TRUE(picture.ok());

@@ -179,13 +179,13 @@ GroundRect Scene::stripUnder(const Eigen::Affine2d& pose) const {
   return placed;
 }
 
-const locate::Placement* Scene::winner() const {
-  const locate::Placement* best = nullptr;
+const Placement* Scene::winner() const {
+  const Placement* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
-  for (const locate::Placement& placement : registration.association.placements) {
+  for (const Placement& placement : registration.association.placements) {
     if (placement.matches.empty()) continue;
     double sum = 0.0;
-    for (const locate::Match& match : placement.matches) {
+    for (const Match& match : placement.matches) {
       sum += (registration.pose * match.moving - match.fixed).norm();
     }
     const double mean = sum / static_cast<double>(placement.matches.size());

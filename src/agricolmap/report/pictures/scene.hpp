@@ -6,8 +6,8 @@
 
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/report/draw/map_layer.hpp"
-#include "agricolmap/report/pictures/pictures.hpp"
 #include "agricolmap/report/draw/view.hpp"
+#include "agricolmap/report/pictures/pictures.hpp"
 
 namespace agricolmap::report {
 
@@ -46,7 +46,7 @@ class Scene {
   /// The outline as `pose` lays it.
   std::vector<Eigen::Vector2d> outlineUnder(const Eigen::Affine2d& pose) const;
   /// The placement that the pose was refined from; nullptr if there is none.
-  const locate::Placement* winner() const;
+  const Placement* winner() const;
 };
 
 /// Side of the insets [m].

@@ -21,7 +21,7 @@ Window makeWindow(const Eigen::Vector2d& corner, double heading, double width, d
 
 namespace {
 
-std::vector<float> paper::gaussianKernel(double sigma) {
+std::vector<float> gaussianKernel(double sigma) {
   const int radius = std::max(1, static_cast<int>(std::ceil(3.0 * sigma)));
   std::vector<float> kernel(static_cast<std::size_t>(2 * radius + 1));
   float sum = 0.0F;
@@ -38,7 +38,7 @@ std::vector<float> paper::gaussianKernel(double sigma) {
 
 void blurRaster(Raster<float>& raster, double sigma) {
   if (sigma < 0.2 || raster.empty()) return;
-  const std::vector<float> kernel = paper::gaussianKernel(sigma);
+  const std::vector<float> kernel = gaussianKernel(sigma);
   const int radius = static_cast<int>(kernel.size()) / 2;
   const int rows = raster.rows();
   const int cols = raster.cols();

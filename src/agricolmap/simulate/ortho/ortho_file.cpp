@@ -190,10 +190,10 @@ Raster<float> resampleHeights(const std::filesystem::path& path, const io::Raste
     }
   }
   if (!any) {
-    throw InputError(
-        fmt::format("no pixel of {} ({}) has a height in {} ({}); do the two show the same field?",
-                    mosaic.name, io::extentOf(mosaic.place, mosaic.colour.rows(), mosaic.colour.cols()),
-                    shape.name, io::extentOf(shape.place, shape.rows, shape.cols)));
+    throw InputError(fmt::format(
+        "no pixel of {} ({}) has a height in {} ({}); do the two show the same field?", mosaic.name,
+        io::extentOf(mosaic.place, mosaic.colour.rows(), mosaic.colour.cols()), shape.name,
+        io::extentOf(shape.place, shape.rows, shape.cols)));
   }
   fillGaps(result);
   return result;
@@ -245,7 +245,7 @@ std::vector<std::size_t> plantPixels(const io::RasterImage& image) {
 }  // namespace
 
 io::PixelWindow chooseWindow(const std::filesystem::path& ortho, const OrthoFileOptions& options,
-                         double width, double height, std::uint64_t seed) {
+                             double width, double height, std::uint64_t seed) {
   checkOptions(options);
   const io::RasterShape shape = io::readRasterShape(ortho);
   const Eigen::Vector2d pixel = pixelSize(shape.place, shape.name, options.gsd);
@@ -253,11 +253,12 @@ io::PixelWindow chooseWindow(const std::filesystem::path& ortho, const OrthoFile
     return static_cast<int>(std::clamp(std::round(length / size), 1.0, 1.0 * most));
   };
   io::PixelWindow window{0, 0, count(width, pixel.x(), shape.cols),
-                     count(height, pixel.y(), shape.rows)};
+                         count(height, pixel.y(), shape.rows)};
   if (window.cols == shape.cols && window.rows == shape.rows) return window;
 
   const int step = std::max(1, (std::max(shape.cols, shape.rows) + kThumbnail - 1) / kThumbnail);
-  const io::RasterImage thumbnail = io::readRaster(ortho, options.raster, {.window = {}, .step = step});
+  const io::RasterImage thumbnail =
+      io::readRaster(ortho, options.raster, {.window = {}, .step = step});
   const std::vector<std::size_t> plants = plantPixels(thumbnail);
   const DataShare share(thumbnail.valid);
   Random random = Random::stream(seed, 0x0E71);

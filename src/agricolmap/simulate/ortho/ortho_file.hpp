@@ -28,7 +28,7 @@ void describe(OptionTable& table, OrthoFileOptions& options);
 /// random green pixel, with data in nearly all of it or, where no such part is found, the fullest
 /// of those tried. Looks at a thumbnail only. Throws InputError as readOrtho does.
 io::PixelWindow chooseWindow(const std::filesystem::path& ortho, const OrthoFileOptions& options,
-                         double width, double height, std::uint64_t seed);
+                             double width, double height, std::uint64_t seed);
 
 /// Reads the field, or a window of the mosaic. Pixels become square; heights may have any
 /// resolution, extent and rotation and are interpolated. Where a model has no height, the field has

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/simulate/ortho/ortho.hpp"
 #include "agricolmap/simulate/field/render.hpp"
+#include "agricolmap/simulate/ortho/ortho.hpp"
 
 namespace agricolmap::simulate {
 
