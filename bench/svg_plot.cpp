@@ -10,8 +10,8 @@ namespace {
 
 // Sizes in user units, pixels where nothing scales them.
 constexpr double kPlotHeight = 190.0;
-constexpr double kLeft = 62.0;         // of the first panel: room for the axis of y
-constexpr double kGap = 26.0;  // between panels
+constexpr double kLeft = 62.0;  // of the first panel: room for the axis of y
+constexpr double kGap = 26.0;   // between panels
 constexpr double kRight = 18.0;
 constexpr double kTop = 58.0;     // room for the legend and the panels' titles
 constexpr double kBottom = 62.0;  // room for the axis of x and the note
@@ -95,8 +95,7 @@ std::string segment(double x1, double y1, double x2, double y2, std::string_view
 /// As short as it goes: 0.25, 1, 20.
 std::string tickText(double value) { return fmt::format("{:.4g}", value); }
 
-std::string drawAxes(const Canvas& canvas, const PlotPanel& panel, const PlotAxis& y,
-                     bool first) {
+std::string drawAxes(const Canvas& canvas, const PlotPanel& panel, const PlotAxis& y, bool first) {
   std::string svg;
   const double bottom = kTop + kPlotHeight;
   for (const double tick : y.ticks) {
@@ -212,8 +211,8 @@ std::string drawFigure(const PlotFigure& figure) {
   const double width = room / std::max(panels, 2.0);
   double legend_end = 0.0;
   const std::string legend = drawLegend(figure, legend_end);
-  const double whole = std::max(kLeft + kRight + panels * width + kGap * (panels - 1.0),
-                                legend_end + kRight);
+  const double whole =
+      std::max(kLeft + kRight + panels * width + kGap * (panels - 1.0), legend_end + kRight);
   const double height = kTop + kPlotHeight + kBottom;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
@@ -228,8 +227,7 @@ std::string drawFigure(const PlotFigure& figure) {
       middle, escapeXml(figure.y.label));
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const PlotPanel& panel = figure.panels[i];
-    const Canvas canvas(kLeft + static_cast<double>(i) * (width + kGap), width,
-                                  panel.x, figure.y);
+    const Canvas canvas(kLeft + static_cast<double>(i) * (width + kGap), width, panel.x, figure.y);
     svg += drawAxes(canvas, panel, figure.y, i == 0);
     for (const PlotLine& line : panel.lines) svg += drawLine(canvas, line);
   }

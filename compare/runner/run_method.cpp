@@ -95,8 +95,8 @@ Eigen::Affine3d PairFiles::guess(const Cell& cell) {
   return wrongGuess(cell, seed_, pair_.moving, pair_.prior);
 }
 
-void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell,
-               const std::string& name, Row& row) {
+void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell, const std::string& name,
+               Row& row) {
   const PairFiles::Moving& moving = files.moving(cell);
   const std::filesystem::path guess = files.folder() / (name + ".guess.txt");
   const std::filesystem::path result = files.folder() / (name + ".json");

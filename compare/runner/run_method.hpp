@@ -51,7 +51,7 @@ inline constexpr double kRightMatch = 0.04;
 
 /// Fills in everything of the row but what it is about (data set, experiment, seed, method).
 /// `name`: of the run's own files in the pair's folder.
-void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell,
-               const std::string& name, Row& row);
+void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell, const std::string& name,
+               Row& row);
 
 }  // namespace agricolmap::compare

@@ -22,8 +22,8 @@ Polisher::Polisher(const map::SignalMap& moving, const correlation::MatchedFilte
       const std::size_t i = moving.weight.index(r, c);
       if (moving.weight[i] <= 0.0F) continue;
       const float w = moving.weight[i];
-      Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(),
-                          w * moving.channel[0][i], w * height_weight * moving.channel[1][i], 0.0F};
+      Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(), w * moving.channel[0][i],
+                w * height_weight * moving.channel[1][i], 0.0F};
       cell.energy = cell.greenness * cell.greenness + cell.height * cell.height;
       energy_ += static_cast<double>(cell.energy);
       cells_.push_back(cell);

@@ -82,7 +82,8 @@ inline Truth growField(const TestField& field) {
 /// The cells whose centre, moved by `field_from_view`, see the truth; others of `window` too when
 /// they lie in the field, else they are empty. `holes` is the share of cells left empty.
 inline map::GridMap viewOf(const Truth& truth, const TestField& field, const map::Box2& window,
-                      const Eigen::Affine2d& field_from_view, double holes, std::uint64_t seed) {
+                           const Eigen::Affine2d& field_from_view, double holes,
+                           std::uint64_t seed) {
   map::GridMap map;
   map.frame.cell = 0.02;
   map.frame.corner = (window.min() / 0.02).array().floor() * 0.02;

@@ -83,7 +83,7 @@ CpdPose makePose(double x, double y, double yaw, double scale_x, double scale_y,
 }
 
 Scene makeScene(std::uint64_t seed, const Sampling& fixed, const Sampling& moving,
-                        double length = 10.0) {
+                double length = 10.0) {
   Random random(seed);
   const std::vector<Plant> plants = makeField(length + 3.0, 8.0, random);
   Scene scene;
@@ -115,8 +115,7 @@ double error(const Scene& scene, const CpdPose& pose) {
 }
 
 /// The truth, moved about the strip's centre by `shift` [m], `yaw` [rad] and relative `scale`.
-CpdPose disturbed(const Scene& scene, double shift, double yaw, double scale,
-                  Random& random) {
+CpdPose disturbed(const Scene& scene, double shift, double yaw, double scale, Random& random) {
   const auto sign = [&] { return random.chance(0.5) ? 1.0 : -1.0; };
   const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
   CpdPose pose = scene.truth;

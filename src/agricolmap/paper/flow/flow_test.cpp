@@ -78,8 +78,7 @@ TEST(Flow, FindsShiftAsThePaperDoes) {
 
 TEST(Flow, FindsAffineWithWarpsAndRematch) {
   const Eigen::Affine2d pose = guessError(kCentre, {-1.5, 1.0}, 0.2, 0.75, 1.25);
-  const Scene scene =
-      sceneOf(pose, {.translation = 2.5, .heading_deg = 11.5, .scale = 0.3});
+  const Scene scene = sceneOf(pose, {.translation = 2.5, .heading_deg = 11.5, .scale = 0.3});
   StageTimes times;
   const auto result = FlowAssociation({}).associate(scene.fixed, scene.moving, scene.space, times);
   ASSERT_FALSE(result.placements.empty());

@@ -58,8 +58,8 @@ SearchSpace paperSpace() {
 TEST(CoherentVote, KeepsWholeStripUnderPaperErrors) {
   for (const double sign : {-1.0, 1.0}) {
     for (const double outliers : {0.6, 0.85, 0.9}) {
-      const Eigen::Affine2d pose = poseOf(11.5 * sign, 1.0 + 0.3 * sign, 1.0 - 0.3 * sign,
-                                                  Eigen::Matrix2d::Identity());
+      const Eigen::Affine2d pose =
+          poseOf(11.5 * sign, 1.0 + 0.3 * sign, 1.0 - 0.3 * sign, Eigen::Matrix2d::Identity());
       const Flow flow = stripFlow(pose, outliers, 7);
       const auto placements = voteCoherent(flow.matches, paperSpace(), kCell, {});
       ASSERT_FALSE(placements.empty());

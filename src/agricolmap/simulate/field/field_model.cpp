@@ -126,8 +126,7 @@ double FieldModel::soilHeight(const Eigen::Vector2d& point) const {
 bool FieldModel::missing(std::int64_t row, std::int64_t index, double u) const {
   // Most gaps come in runs (a blocked drill, wild animals), some are single plants.
   const auto run = static_cast<std::int64_t>(std::floor(u / options_.gap_length));
-  return hashUniform(hashBits(seed_, kGap), row, run) <
-             static_cast<float>(0.6 * options_.gaps) ||
+  return hashUniform(hashBits(seed_, kGap), row, run) < static_cast<float>(0.6 * options_.gaps) ||
          hashUniform(hashBits(seed_, kMissing), row, index) <
              static_cast<float>(0.4 * options_.gaps);
 }
