@@ -23,19 +23,19 @@ simulate::SimulatedPair smallPair(int seed, bool other_field = false) {
 }
 
 pipeline::Registration registerPair(const simulate::SimulatedPair& pair) {
-  StageTimes times;
+  Monitor monitor;
   return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, pipeline::preset("default"),
-                                  times);
+                                  monitor);
 }
 
 TEST(Pipeline, FindsTheTruthInUtmCoordinates) {
   const simulate::SimulatedPair pair = smallPair(7);
   ASSERT_GT(pair.uav.origin.norm(), 1e6);
   const pipeline::Registration result = registerPair(pair);
-  ASSERT_TRUE(result.has_transform);
+  ASSERT_TRUE(result.transform);
   EXPECT_EQ(result.verdict.status, verdict::Status::kAccepted);
   const evaluate::RegistrationErrors errors = evaluate::evaluateTransform(
-      result.fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
+      result.transform->fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
   EXPECT_TRUE(errors.within({})) << "RMS " << errors.rms << " m, e_t " << errors.translation;
   EXPECT_LT(errors.rms, 0.03);
   // The initial guess was not already that good.
@@ -52,13 +52,13 @@ TEST(Pipeline, WhereTheFieldLiesMakesNoDifference) {
   moved.uav.origin += far;
   moved.prior = Eigen::Translation3d(far) * pair.prior;
   const pipeline::Registration there = registerPair(moved);
-  ASSERT_TRUE(here.has_transform);
-  ASSERT_TRUE(there.has_transform);
-  const Eigen::Affine3d back = Eigen::Translation3d(-far) * there.fixed_from_moving;
+  ASSERT_TRUE(here.transform);
+  ASSERT_TRUE(there.transform);
+  const Eigen::Affine3d back = Eigen::Translation3d(-far) * there.transform->fixed_from_moving;
   double worst = 0.0;
   for (std::size_t i = 0; i < pair.ugv.size(); i += 1000) {
     const Eigen::Vector3d point = pair.ugv.filePoint(i);
-    worst = std::max(worst, (back * point - here.fixed_from_moving * point).norm());
+    worst = std::max(worst, (back * point - here.transform->fixed_from_moving * point).norm());
   }
   EXPECT_LT(worst, 1e-4);
 }
@@ -66,15 +66,15 @@ TEST(Pipeline, WhereTheFieldLiesMakesNoDifference) {
 TEST(Pipeline, ReportsThePartsOfItsTransform) {
   const simulate::SimulatedPair pair = smallPair(9);
   const pipeline::Registration result = registerPair(pair);
-  ASSERT_TRUE(result.has_transform);
+  ASSERT_TRUE(result.transform);
   // Parts are relative to the guess: the geotag's errors were 2 degrees and 5 percent.
-  EXPECT_NEAR(std::abs(result.parts.yaw) * 180.0 / 3.14159265358979, 2.0, 1.0);
-  EXPECT_NEAR(std::abs(std::log(result.parts.scale_x)), 0.05, 0.02);
-  EXPECT_NEAR(std::abs(std::log(result.parts.scale_y)), 0.05, 0.02);
+  EXPECT_NEAR(std::abs(result.transform->parts.yaw) * 180.0 / 3.14159265358979, 2.0, 1.0);
+  EXPECT_NEAR(std::abs(std::log(result.transform->parts.scale_x)), 0.05, 0.02);
+  EXPECT_NEAR(std::abs(std::log(result.transform->parts.scale_y)), 0.05, 0.02);
   const Eigen::Affine3d composed = Eigen::Translation3d(pair.uav.origin) *
-                                   result.local_fixed_from_moving *
+                                   result.transform->local_fixed_from_moving *
                                    Eigen::Translation3d(-pair.ugv.origin);
-  EXPECT_TRUE(composed.isApprox(result.fixed_from_moving, 1e-9));
+  EXPECT_TRUE(composed.isApprox(result.transform->fixed_from_moving, 1e-9));
 }
 
 TEST(Pipeline, RejectsTheStripOfAnotherField) {
@@ -86,15 +86,15 @@ TEST(Pipeline, FindsTheStripWithoutAGuess) {
   const simulate::SimulatedPair pair = smallPair(11);
   pipeline::RegistrationOptions options = pipeline::preset("default");
   options.prior = PriorUncertainty::none();
-  StageTimes times;
+  Monitor monitor;
   // Half way round, and kilometres off.
   const Eigen::Affine3d guess = Eigen::Translation3d(3000.0, -1000.0, 50.0) * pair.prior *
                                 Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitZ());
   const pipeline::Registration result =
-      pipeline::registerClouds(pair.uav, pair.ugv, guess, options, times);
+      pipeline::registerClouds(pair.uav, pair.ugv, guess, options, monitor);
   ASSERT_EQ(result.verdict.status, verdict::Status::kAccepted);
-  EXPECT_LT(evaluate::evaluateTransform(result.fixed_from_moving, {pair.best_affine, pair.truth},
-                                        pair.ugv)
+  EXPECT_LT(evaluate::evaluateTransform(result.transform->fixed_from_moving,
+                                        {pair.best_affine, pair.truth}, pair.ugv)
                 .rms,
             0.05);
 }
@@ -109,15 +109,16 @@ TEST(Pipeline, TwoEqualFieldsAreAmbiguous) {
   }
   pipeline::RegistrationOptions options = pipeline::preset("default");
   options.prior.translation = kAnywhere;
-  StageTimes times;
+  Monitor monitor;
   const pipeline::Registration result =
-      pipeline::registerClouds(field, pair.ugv, pair.prior, options, times);
+      pipeline::registerClouds(field, pair.ugv, pair.prior, options, monitor);
   ASSERT_EQ(result.verdict.status, verdict::Status::kAmbiguous);
   EXPECT_LE(result.verdict.probability, 0.5);
   ASSERT_EQ(result.alternatives.size(), 1U);
   // One of the two places is the truth, and the other lies 15 m beside it.
   const evaluate::Truth truth{pair.best_affine, pair.truth};
-  const double here = evaluate::evaluateTransform(result.fixed_from_moving, truth, pair.ugv).rms;
+  const double here =
+      evaluate::evaluateTransform(result.transform->fixed_from_moving, truth, pair.ugv).rms;
   const double there =
       evaluate::evaluateTransform(result.alternatives[0].fixed_from_moving, truth, pair.ugv).rms;
   EXPECT_LT(std::min(here, there), 0.06);
@@ -132,22 +133,23 @@ TEST(Pipeline, FindsAnUnknownScale) {
   pipeline::RegistrationOptions options = pipeline::preset("default");
   options.prior = PriorUncertainty::none();
   options.prior.scale_unknown = true;
-  StageTimes times;
+  Monitor monitor;
   const pipeline::Registration result =
-      pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+      pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, monitor);
   ASSERT_EQ(result.verdict.status, verdict::Status::kAccepted);
   const evaluate::Truth truth{Eigen::Affine3d::Identity(), pair.truth};
-  EXPECT_LT(evaluate::evaluateTransform(result.fixed_from_moving, truth, pair.ugv).rms, 0.05);
-  EXPECT_NEAR(result.parts.scale_x, 1.0 / static_cast<double>(kUnit), 0.2);
-  EXPECT_NEAR(result.vertical_scale, 1.0 / static_cast<double>(kUnit), 0.2);
+  EXPECT_LT(evaluate::evaluateTransform(result.transform->fixed_from_moving, truth, pair.ugv).rms,
+            0.05);
+  EXPECT_NEAR(result.transform->parts.scale_x, 1.0 / static_cast<double>(kUnit), 0.2);
+  EXPECT_NEAR(result.transform->vertical_scale, 1.0 / static_cast<double>(kUnit), 0.2);
 }
 
 TEST(Pipeline, TheFlowCannotSearchEverywhere) {
   const simulate::SimulatedPair pair = smallPair(7);
   pipeline::RegistrationOptions options = pipeline::preset("paper");
   options.prior.scale_unknown = true;
-  StageTimes times;
-  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times),
+  Monitor monitor;
+  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, monitor),
                UsageError);
 }
 
@@ -155,8 +157,8 @@ TEST(Pipeline, RefusesOptionsOutsideTheirLimits) {
   const simulate::SimulatedPair pair = smallPair(7);
   pipeline::RegistrationOptions options = pipeline::preset("default");
   options.grid.cell = -1.0;
-  StageTimes times;
-  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times),
+  Monitor monitor;
+  EXPECT_THROW(pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, monitor),
                UsageError);
 }
 

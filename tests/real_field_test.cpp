@@ -100,12 +100,12 @@ TEST(RealField, FindsAStripOfRealSoybeans) {
   const Strip strip = cutStrip(field, strip_middle, 6.0, 2.2, guess * error, Random(3));
   ASSERT_GT(strip.cloud.size(), 50000U);
 
-  StageTimes times;
+  Monitor monitor;
   const pipeline::Registration result = pipeline::registerClouds(
-      thinned(field, Random(4)), strip.cloud, guess, pipeline::preset("default"), times);
-  ASSERT_TRUE(result.has_transform);
+      thinned(field, Random(4)), strip.cloud, guess, pipeline::preset("default"), monitor);
+  ASSERT_TRUE(result.transform);
   const evaluate::RegistrationErrors errors =
-      evaluate::evaluateTransform(result.fixed_from_moving, strip.truth, strip.cloud);
+      evaluate::evaluateTransform(result.transform->fixed_from_moving, strip.truth, strip.cloud);
   RecordProperty("rms_mm", static_cast<int>(1000.0 * errors.rms));
   EXPECT_TRUE(errors.within({})) << "RMS " << errors.rms << " m, horizontal "
                                  << errors.rms_horizontal << " m, vertical " << errors.rms_vertical

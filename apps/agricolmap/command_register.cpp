@@ -98,13 +98,14 @@ LoadedPair load(const RegisterArguments& arguments) {
 void printSummary(const pipeline::Registration& result, const std::string& directory) {
   fmt::print("{}\n", toString(result.verdict.status));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
-  if (result.has_transform) {
+  if (result.transform) {
     constexpr double kDegrees = 180.0 / std::numbers::pi;
+    const pipeline::Transform& transform = *result.transform;
     fmt::print(
         "relative to the initial guess: shift {:.3f} {:.3f} {:.3f} m, heading {:.3f} deg, scales "
         "{:.4f} {:.4f}\n",
-        result.shift.x(), result.shift.y(), result.shift.z(), result.parts.yaw * kDegrees,
-        result.parts.scale_x, result.parts.scale_y);
+        transform.shift.x(), transform.shift.y(), transform.shift.z(),
+        transform.parts.yaw * kDegrees, transform.parts.scale_x, transform.parts.scale_y);
   }
   fmt::print("results in {}\n", directory);
 }
@@ -149,17 +150,17 @@ report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments,
 std::vector<std::string> writeResults(const RegisterArguments& arguments,
                                       const pipeline::RegistrationOptions& options,
                                       const LoadedPair& pair, const pipeline::Registration& result,
-                                      const io::StagedOutput& output, StageTimes& times) {
-  const bool keep = result.has_transform && (result.verdict.status == verdict::Status::kAccepted ||
-                                             arguments.keep_rejected);
+                                      const io::StagedOutput& output, Monitor& monitor) {
+  const bool keep = result.transform && (result.verdict.status == verdict::Status::kAccepted ||
+                                         arguments.keep_rejected);
   if (keep) {
-    times.run("write", [&] {
-      io::writeMatrix(output.path("transform.txt"), result.fixed_from_moving);
-      io::writePly(output.path("aligned.ply"), pair.moving, result.fixed_from_moving);
+    monitor.run(Stage::kWrite, [&] {
+      io::writeMatrix(output.path("transform.txt"), result.transform->fixed_from_moving);
+      io::writePly(output.path("aligned.ply"), pair.moving, result.transform->fixed_from_moving);
     });
   }
   if (arguments.no_pictures) return {};
-  return times.run("pictures", [&] {
+  return monitor.run(Stage::kPictures, [&] {
     return report::writePictures(output.folder(), result,
                                  {arguments.fixed, arguments.moving, options.evidence});
   });
@@ -178,17 +179,17 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   // First of all, so that the work does not end at a folder that cannot be written.
   io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
-  StageTimes times([&](std::string_view stage) { progress.step(stage); });
+  Monitor monitor(globals.stop, [&](Stage stage) { progress.step(nameOf(stage)); });
   report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
   info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
-  const LoadedPair pair = times.run("read", [&] { return load(arguments); });
+  const LoadedPair pair = monitor.run(Stage::kRead, [&] { return load(arguments); });
   warnOfDropped(pair.fixed);
   warnOfDropped(pair.moving);
   const pipeline::Registration result =
-      pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, times);
-  info.pictures = writeResults(arguments, options, pair, result, output, times);
+      pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor);
+  info.pictures = writeResults(arguments, options, pair, result, output, monitor);
   report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result,
-                                times, info);
+                                monitor, info);
   throwIfInterrupted();
   std::vector<std::string> stale = report::pictureNames();
   stale.insert(stale.end(), {"transform.txt", "aligned.ply"});

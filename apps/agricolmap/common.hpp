@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,7 @@ struct Globals {
   int verbose = 0;
   bool quiet = false;
   bool overwrite = false;
+  std::stop_token stop;  ///< asked to stop by SIGINT and SIGTERM
   std::vector<std::string> command_line;
 };
 

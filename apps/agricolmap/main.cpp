@@ -10,6 +10,7 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "common.hpp"
+#include "support/signal_stop.hpp"
 
 namespace agricolmap {
 namespace {
@@ -72,7 +73,9 @@ ExitCode run(int argc, char** argv) {
   }
   setUpLogging(globals);
   requireCpu();
-  installInterruptHandler();
+  const SignalStop signals;
+  globals.stop = signals.token();
+  const StopScope scope(globals.stop);
   const ThreadLimit limit(globals.threads);
   for (const CommandSlot& command : commands) {
     if (command.app->parsed()) return command.run();

@@ -90,10 +90,20 @@ TEST(Parallel, SumIsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(one, sum());
 }
 
-TEST(Parallel, StopsWhenInterrupted) {
-  requestInterrupt();
-  EXPECT_THROW(parallelFor(10, [](std::size_t) {}), Interrupted);
-  requestInterrupt(false);
+TEST(Parallel, StopsWhenItsScopeIsStoppedAndNoOther) {
+  std::stop_source stopped;
+  stopped.request_stop();
+  const std::stop_source other;
+  const auto nested = [] {
+    parallelFor(10, [](std::size_t) { parallelFor(10, [](std::size_t) {}); });
+  };
+  {
+    const StopScope scope(stopped.get_token());
+    EXPECT_THROW(nested(), Interrupted);
+    const StopScope inner(other.get_token());
+    EXPECT_NO_THROW(nested());
+  }
+  EXPECT_NO_THROW(nested());
   std::atomic<int> calls{0};
   parallelFor(10, [&](std::size_t) { ++calls; });
   EXPECT_EQ(calls, 10);

@@ -79,13 +79,15 @@ void runItems(const Body& body, std::size_t begin, std::size_t end) {
 }  // namespace detail
 
 /// Calls `body(i)` for i in [0, count) from several threads. `body` must only write what belongs to
-/// i. Throws Interrupted between items when the user asked to stop.
+/// i. Throws Interrupted between items when the StopScope of the caller asks to stop.
 template <typename Body>
 void parallelFor(std::size_t count, const Body& body, std::size_t grain = 1) {
   detail::ForkJoin call;
+  const std::stop_token* const stop = detail::stop_of_thread;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       [[maybe_unused]] const detail::ForkJoin::Task task(call);
+                      const detail::StopHandover handover(stop);
                       throwIfInterrupted();
                       detail::runItems(body, range.begin(), range.end());
                     });

@@ -1,7 +1,7 @@
 // Where the moving map may lie: what a search hands on to the refinement.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 namespace agricolmap {
@@ -14,8 +14,11 @@ struct Match {
 
 /// One hypothesis of where the moving map lies.
 struct Placement {
-  std::vector<Match> matches;  ///< coherent pairs: what the affine is estimated from
-  double score = 0.0;          ///< of its own association; larger is better, comparable within one
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
+  double score = 0.0;  ///< of its own search; larger is better, comparable within one
+  /// The coherent pairs that speak for it, where it was found by matching points: the preliminary
+  /// affine (paper Eq. 3) is estimated from them. Empty where a search found the pose as a whole.
+  std::vector<Match> matches;
 };
 
 }  // namespace agricolmap

@@ -13,9 +13,9 @@ constexpr std::size_t kMostPoints = 20000;
 
 std::optional<Coverage> coverageOf(const pipeline::Registration& registration, const Cloud& fixed,
                                    const Cloud& moving, const Truth& truth) {
-  if (!registration.has_transform || !registration.uncertainty) return std::nullopt;
-  const verdict::PoseUncertainty& uncertainty = *registration.uncertainty;
-  const Eigen::Affine3d& levelled = registration.frames.levelled_from_fixed;
+  if (!registration.transform || !registration.placed->uncertainty) return std::nullopt;
+  const verdict::PoseUncertainty& uncertainty = *registration.placed->uncertainty;
+  const Eigen::Affine3d& levelled = registration.maps.frames.levelled_from_fixed;
   const std::size_t step = std::max<std::size_t>(1, moving.size() / kMostPoints);
   using Parameters = Eigen::Matrix<double, 5, 1>;
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
@@ -24,7 +24,7 @@ std::optional<Coverage> coverageOf(const pipeline::Registration& registration, c
   double count = 0.0;
   for (std::size_t i = 0; i < moving.size(); i += step) {
     const Eigen::Vector3d found =
-        levelled * (registration.local_fixed_from_moving * moving.xyz[i].cast<double>());
+        levelled * (registration.transform->local_fixed_from_moving * moving.xyz[i].cast<double>());
     const Eigen::Vector3d point = moving.origin + moving.xyz[i].cast<double>();
     const Eigen::Vector3d belongs =
         truth.points.empty() ? truth.best_affine * point : truth.points[i];

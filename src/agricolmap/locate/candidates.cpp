@@ -45,19 +45,4 @@ std::vector<Candidate> distinctCandidates(std::vector<Candidate> all, int most, 
   return kept;
 }
 
-Placement placementOf(const Candidate& candidate, const map::StripFrame& strip,
-                      const SearchSpace& space) {
-  Placement placement;
-  placement.score = candidate.score;
-  const Eigen::Affine2d pose = poseOf(candidate, space);
-  for (const double u : {-1.0, 0.0, 1.0}) {
-    for (const double v : {-1.0, 0.0, 1.0}) {
-      const Eigen::Vector2d point =
-          strip.world({u * strip.half_extent.x(), v * strip.half_extent.y()});
-      placement.matches.push_back({point, pose * point});
-    }
-  }
-  return placement;
-}
-
 }  // namespace agricolmap::locate

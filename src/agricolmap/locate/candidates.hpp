@@ -32,8 +32,4 @@ inline Eigen::Affine2d poseOf(const Candidate& candidate, const SearchSpace& spa
 std::vector<Candidate> distinctCandidates(std::vector<Candidate> all, int most, double separation,
                                           const map::StripFrame& strip, const SearchSpace& space);
 
-/// The candidate as pairs of points over the strip.
-Placement placementOf(const Candidate& candidate, const map::StripFrame& strip,
-                      const SearchSpace& space);
-
 }  // namespace agricolmap::locate

@@ -1,6 +1,7 @@
 #include "agricolmap/locate/correlation_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -40,7 +41,6 @@ void describe(OptionTable& table, CorrelationOptions& options) {
                 "placements that are handed on to be refined and compared");
   table.number("separation", options.separation, 0.0, 100.0, "m",
                "placements whose corners differ by less are one");
-  table.group("signal", options.signal);
   table.group("filter", options.filter);
 }
 
@@ -91,16 +91,15 @@ std::vector<map::Block> texturedBlocks(std::vector<map::Block> blocks, int most)
   return blocks;
 }
 
-}  // namespace
-
-CorrelationSearch::CorrelationSearch(const CorrelationOptions& options) : options_(options) {
-  checkOptions(options);
-}
+/// The strongest waves (rows, plants along them) of both maps.
+struct RowWaves {
+  std::vector<Wave> moving;
+  std::vector<Wave> fixed;
+};
 
 /// The maps and the plan at one cell size.
-struct CorrelationSearch::Setup {
-  map::SignalMap fixed;
-  map::SignalMap moving;
+struct Setup {
+  int factor = 1;
   map::StripFrame strip;
   std::vector<map::Block> blocks;
   Eigen::Matrix3d strip_metric;
@@ -108,30 +107,26 @@ struct CorrelationSearch::Setup {
   bool by_rows = false;  ///< only rows on rows
 
   /// Cells of the fixed map times correlations.
-  double work() const {
+  double work(const map::SignalMap& fixed) const {
     return static_cast<double>(fixed.weight.size()) *
            static_cast<double>(plan.coarse.size() * blocks.size());
   }
 };
 
-CorrelationSearch::Setup CorrelationSearch::setUp(const map::GridMap& fixed,
-                                                  const map::GridMap& moving,
-                                                  const SearchSpace& space, const RowWaves& waves,
-                                                  double cell) const {
-  const int factor = std::max(1, static_cast<int>(std::lround(cell / fixed.frame.cell)));
+Setup setUp(const map::SignalMap& moving, double cell, int factor, const SearchSpace& space,
+            const RowWaves& waves, const CorrelationOptions& options) {
   Setup setup;
-  setup.fixed = map::makeSignalMap(fixed, factor, options_.signal);
-  setup.moving = map::makeSignalMap(moving, factor, options_.signal);
-  setup.strip = map::stripFrame(setup.moving);
+  setup.factor = factor;
+  setup.strip = map::stripFrame(moving);
   const map::StripFrame& strip = setup.strip;
-  const map::Stretch stretch = map::texturedStretch(
-      map::cutBlocks(setup.moving, strip, options_.block), strip, options_.max_length);
-  setup.blocks = texturedBlocks(stretch.blocks, options_.max_blocks);
+  const map::Stretch stretch =
+      map::texturedStretch(map::cutBlocks(moving, strip, options.block), strip, options.max_length);
+  setup.blocks = texturedBlocks(stretch.blocks, options.max_blocks);
   const map::Block& block = setup.blocks.front();
   const Eigen::Matrix3d block_metric =
       displacementMetric(strip.axes, 0.5 * (block.high - block.low), space.scale_axes);
   setup.strip_metric = displacementMetric(strip.axes, strip.half_extent, space.scale_axes);
-  const double radius = options_.tolerance * setup.fixed.frame.cell;
+  const double radius = options.tolerance * cell;
   const auto coarse = coverSpace(space.uncertainty, block_metric, radius);
   const auto fine =
       coverSpace(space.uncertainty,
@@ -142,30 +137,67 @@ CorrelationSearch::Setup CorrelationSearch::setUp(const map::GridMap& fixed,
   return setup;
 }
 
-AssociationResult CorrelationSearch::associate(const map::GridMap& fixed,
-                                               const map::GridMap& moving, const SearchSpace& space,
-                                               StageTimes& times) const {
-  return times.run("search", [&] { return search(fixed, moving, space); });
+/// At the options' cells or, where that is too much work, at coarser ones.
+Setup affordableSetup(const correlation::MapSignals& fixed, const correlation::MapSignals& moving,
+                      const SearchSpace& space, const CorrelationOptions& options) {
+  RowWaves waves;
+  if (options.rows_on_rows) {
+    waves.fixed = strongestWaves(fixed.grid(), fixed.options(), kWaves, kMinWave);
+    waves.moving = strongestWaves(moving.grid(), moving.options(), kWaves, kMinWave);
+  }
+  const auto at = [&](double cell) {
+    const int factor = std::max(1, static_cast<int>(std::lround(cell / fixed.grid().frame.cell)));
+    return setUp(moving.at(factor), fixed.at(factor).frame.cell, factor, space, waves, options);
+  };
+  double cell = options.cell;
+  Setup setup = at(cell);
+  while (setup.work(fixed.at(setup.factor)) > options.max_work * 1e6 &&
+         cell * kCoarser <= kCoarsestCell) {
+    cell *= kCoarser;
+    setup = at(cell);
+  }
+  return setup;
 }
 
-AssociationResult CorrelationSearch::search(const map::GridMap& fixed, const map::GridMap& moving,
-                                            const SearchSpace& space) const {
-  RowWaves waves;
-  if (options_.rows_on_rows) {
-    waves.fixed = strongestWaves(fixed, options_.signal, kWaves, kMinWave);
-    waves.moving = strongestWaves(moving, options_.signal, kWaves, kMinWave);
+Placement placementOf(const Candidate& candidate, const map::StripFrame& strip,
+                      const SearchSpace& space) {
+  Placement placement{.pose = poseOf(candidate, space), .score = candidate.score, .matches = {}};
+  for (const double u : {-1.0, 0.0, 1.0}) {
+    for (const double v : {-1.0, 0.0, 1.0}) {
+      const Eigen::Vector2d point =
+          strip.world({u * strip.half_extent.x(), v * strip.half_extent.y()});
+      placement.matches.push_back({point, placement.pose * point});
+    }
   }
-  double cell = options_.cell;
-  Setup setup = setUp(fixed, moving, space, waves, cell);
-  while (setup.work() > options_.max_work * 1e6 && cell * kCoarser <= kCoarsestCell) {
-    cell *= kCoarser;
-    setup = setUp(fixed, moving, space, waves, cell);
-  }
+  return placement;
+}
+
+/// What a search that was not accepted is followed by, an ambiguous one, too: among places that fit
+/// equally badly the right one may be missing. Finer cells are dearer, and needed where the
+/// canopy is closed and only leaves tell places apart; then all headings and scales, should the
+/// rows have misled.
+struct Attempt {
+  double cell;  ///< of the options' cell
+  int climbs;   ///< times the options' climbs
+  double work;  ///< times the options' limit
+  bool rows_on_rows;
+};
+constexpr std::array<Attempt, kMostAttempts> kAttempts = {
+    {{1.0, 1, 1.0, true}, {2.0 / 3.0, 3, 16.0, true}, {1.0, 2, 4.0, false}}};
+
+}  // namespace
+
+SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
+                                 const correlation::MapSignals& moving, const SearchSpace& space,
+                                 const CorrelationOptions& options) {
+  const Setup setup = affordableSetup(fixed, moving, space, options);
+  const map::SignalMap& cells = moving.at(setup.factor);
+  const double cell = fixed.at(setup.factor).frame.cell;
   // A block counts as soon as its middle is within half of it from the map.
-  const int rim = static_cast<int>(std::ceil(0.5 * options_.block / setup.fixed.frame.cell));
-  const correlation::MatchedFilter filter(setup.fixed, options_.filter, rim);
-  const BlockSearch search(setup.moving, filter, space, setup.strip, setup.blocks, options_.peaks,
-                           options_.min_inside);
+  const int rim = static_cast<int>(std::ceil(0.5 * options.block / cell));
+  const correlation::MatchedFilter& filter = fixed.filter(setup.factor, options.filter, rim);
+  const BlockSearch search(cells, filter, space, setup.strip, setup.blocks, options.peaks,
+                           options.min_inside);
   const Plan& plan = setup.plan;
   std::vector<std::vector<Candidate>> found(plan.coarse.size());
   parallelFor(plan.coarse.size(),
@@ -173,22 +205,36 @@ AssociationResult CorrelationSearch::search(const map::GridMap& fixed, const map
   std::vector<Candidate> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   std::vector<Candidate> kept =
-      distinctCandidates(std::move(all), options_.climbs, options_.separation, setup.strip, space);
-  const Polisher polisher(setup.moving, filter, space, setup.strip_metric, options_.min_inside);
+      distinctCandidates(std::move(all), options.climbs, options.separation, setup.strip, space);
+  const Polisher polisher(cells, filter, space, setup.strip_metric, options.min_inside);
   parallelFor(kept.size(), [&](std::size_t i) { kept[i] = polisher.improve(kept[i]); });
-  kept = distinctCandidates(std::move(kept), options_.candidates, options_.separation, setup.strip,
+  kept = distinctCandidates(std::move(kept), options.candidates, options.separation, setup.strip,
                             space);
-  AssociationResult result;
+  SearchResult result;
   for (const Candidate& candidate : kept) {
     result.placements.push_back(placementOf(candidate, setup.strip, space));
   }
-  result.counts = {{"hypotheses", static_cast<double>(plan.fine)},
-                   {"correlations", static_cast<double>(plan.coarse.size() * setup.blocks.size())},
-                   {"rows_on_rows", setup.by_rows ? 1.0 : 0.0},
-                   {"search_cell_m", setup.fixed.frame.cell},
-                   {"blocks", static_cast<double>(setup.blocks.size())},
-                   {"placements", static_cast<double>(kept.size())}};
+  result.report = {.hypotheses = plan.fine,
+                   .correlations = plan.coarse.size() * setup.blocks.size(),
+                   .blocks = setup.blocks.size(),
+                   .rows_on_rows = setup.by_rows,
+                   .cell = cell};
   return result;
+}
+
+std::optional<CorrelationOptions> optionsOfAttempt(const CorrelationOptions& options,
+                                                   std::size_t attempt,
+                                                   const std::optional<SearchReport>& before) {
+  if (attempt >= kAttempts.size()) return std::nullopt;
+  const Attempt& chosen = kAttempts[attempt];
+  // Nothing new when the rows did not restrict the search before.
+  if (before && !chosen.rows_on_rows && !before->rows_on_rows) return std::nullopt;
+  CorrelationOptions changed = options;
+  changed.cell *= chosen.cell;
+  changed.climbs *= chosen.climbs;
+  changed.max_work *= chosen.work;
+  changed.rows_on_rows = options.rows_on_rows && chosen.rows_on_rows;
+  return changed;
 }
 
 }  // namespace agricolmap::locate

@@ -1,12 +1,15 @@
 // A global search for the moving map: every heading and pair of scales that the initial guess
-// leaves open, each over all shifts at once. Follows recipe E of the research notes, with the
-// strip cut into blocks: a block tolerates coarse steps of heading and scale, so the expensive
-// correlations are few; the fine hypotheses are looked at where the blocks together promise much.
+// leaves open, each over all shifts at once. The strip is cut into blocks: a block tolerates coarse
+// steps of heading and scale, so the expensive correlations are few; the fine hypotheses are looked
+// at where the blocks together promise much.
 #pragma once
 
-#include "agricolmap/correlation/matched_filter.hpp"
-#include "agricolmap/locate/association.hpp"
-#include "agricolmap/locate/row_waves.hpp"
+#include <optional>
+#include <vector>
+
+#include "agricolmap/core/placement.hpp"
+#include "agricolmap/core/search_space.hpp"
+#include "agricolmap/correlation/map_signals.hpp"
 
 namespace agricolmap::locate {
 
@@ -25,29 +28,35 @@ struct CorrelationOptions {
   int climbs = 64;           ///< placements of the lattice from which the score is climbed
   int candidates = 8;        ///< placements handed on
   double separation = 0.3;   ///< placements whose corners differ by less are one [m]
-  map::SignalOptions signal;
   correlation::MatchedFilterOptions filter;
 };
 void describe(OptionTable& table, CorrelationOptions& options);
 
-class CorrelationSearch : public Association {
- public:
-  explicit CorrelationSearch(const CorrelationOptions& options);
-  AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving,
-                              const SearchSpace& space, StageTimes& times) const override;
-
- private:
-  struct Setup;
-  struct RowWaves {
-    std::vector<Wave> moving;
-    std::vector<Wave> fixed;
-  };
-  Setup setUp(const map::GridMap& fixed, const map::GridMap& moving, const SearchSpace& space,
-              const RowWaves& waves, double cell) const;
-  AssociationResult search(const map::GridMap& fixed, const map::GridMap& moving,
-                           const SearchSpace& space) const;
-
-  CorrelationOptions options_;
+/// What a search was, for the report.
+struct SearchReport {
+  std::size_t hypotheses = 0;    ///< headings and scales that were looked at
+  std::size_t correlations = 0;  ///< of a block with the whole fixed map
+  std::size_t blocks = 0;        ///< of the moving map, that took part
+  bool rows_on_rows = false;     ///< only headings and scales that lay rows on rows were tried
+  double cell = 0.0;             ///< [m]
 };
+
+struct SearchResult {
+  std::vector<Placement> placements;  ///< best first, of no matches; empty when nothing was found
+  SearchReport report;
+};
+
+/// Deterministic, whatever the number of threads.
+SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
+                                 const correlation::MapSignals& moving, const SearchSpace& space,
+                                 const CorrelationOptions& options);
+
+/// The options of the `attempt`-th search, from 0: a search that was not accepted is followed by
+/// finer and freer ones. Nothing when there is none left, or when it would find nothing new after
+/// one that was like `before`, where there was one.
+std::optional<CorrelationOptions> optionsOfAttempt(const CorrelationOptions& options,
+                                                   std::size_t attempt,
+                                                   const std::optional<SearchReport>& before);
+inline constexpr std::size_t kMostAttempts = 3;
 
 }  // namespace agricolmap::locate

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/map/blocks.hpp"
 
 namespace agricolmap::locate {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "agricolmap/core/options.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/placement.hpp"
 
 namespace agricolmap::paper {
 

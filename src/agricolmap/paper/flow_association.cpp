@@ -93,9 +93,9 @@ struct Found {
 class FlowSearch {
  public:
   FlowSearch(const map::GridMap& fixed, const map::GridMap& moving, const SearchSpace& space,
-             const FlowAssociationOptions& options, StageTimes& times)
-      : moving_(moving), space_(space), options_(options), times_(times) {
-    times_.run("describe", [&] {
+             const FlowAssociationOptions& options, Monitor& monitor)
+      : moving_(moving), space_(space), options_(options), monitor_(monitor) {
+    monitor_.run(Stage::kDescribe, [&] {
       fixed_maps_ = describeMap(fixed, searchWindow(moving, Reach(space), options.describe),
                                 options.flow.levels, options.describe);
     });
@@ -141,7 +141,7 @@ class FlowSearch {
 
   Matched match(const Eigen::Affine2d& warp, const Reach& reach, int levels,
                 std::uint64_t seed) const {
-    const Pyramid maps = times_.run("describe", [&] {
+    const Pyramid maps = monitor_.run(Stage::kDescribe, [&] {
       if (warp.isApprox(Eigen::Affine2d::Identity(), 1e-12)) {
         return describeMap(moving_, boxOf(moving_.frame), levels, options_.describe);
       }
@@ -150,7 +150,7 @@ class FlowSearch {
     });
     Matched result;
     if (fixed_maps_.empty() || maps.empty()) return result;
-    times_.run("flow", [&] {
+    monitor_.run(Stage::kFlow, [&] {
       const SeedLattice seeds = latticeOn(maps.front(), options_.flow.seed_spacing);
       result.seeds =
           static_cast<std::size_t>(std::count(seeds.active.begin(), seeds.active.end(), 1));
@@ -164,7 +164,7 @@ class FlowSearch {
   /// speaks. Scores count seeds as if the warp did not stretch.
   std::vector<Found> vote(const Matched& matched, const Eigen::Affine2d& warp,
                           const SearchSpace& space, const Eigen::Affine2d& vote_from_moving) const {
-    return times_.run("vote", [&] {
+    return monitor_.run(Stage::kVote, [&] {
       const Eigen::Affine2d unwarp = warp.inverse();
       std::vector<Match> original = matched.matches;
       for (Match& m : original) m.moving = unwarp * m.moving;
@@ -184,6 +184,7 @@ class FlowSearch {
         const auto pose = fitScaledRotation(found.placement.matches, {}, space_.scale_axes);
         if (!pose) continue;
         found.pose = *pose;
+        found.placement.pose = pose->fixed_from_moving;
         result.push_back(std::move(found));
       }
       return result;
@@ -223,46 +224,31 @@ class FlowSearch {
   const map::GridMap& moving_;
   const SearchSpace& space_;
   const FlowAssociationOptions& options_;
-  StageTimes& times_;
+  Monitor& monitor_;
   Pyramid fixed_maps_;
 };
 
-double shareOf(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
+MatchCount countOf(const std::vector<Found>& found) {
+  if (found.empty()) return {};
+  return {found.front().all.size(), found.front().placement.matches.size()};
+}
 
 }  // namespace
 
-FlowAssociation::FlowAssociation(const FlowAssociationOptions& options) : options_(options) {
-  checkOptions(options);
-}
-
-locate::AssociationResult FlowAssociation::associate(const map::GridMap& fixed,
-                                                     const map::GridMap& moving,
-                                                     const SearchSpace& space,
-                                                     StageTimes& times) const {
-  const FlowSearch search(fixed, moving, space, options_, times);
+FlowResult associateByFlow(const map::GridMap& fixed, const map::GridMap& moving,
+                           const SearchSpace& space, const FlowAssociationOptions& options,
+                           Monitor& monitor) {
+  const FlowSearch search(fixed, moving, space, options, monitor);
   std::vector<Found> found = search.search();
-  locate::AssociationResult result;
-  if (found.empty()) {
-    result.counts = {{"seeds", 0.0}, {"matches", 0.0}, {"inliers", 0.0}, {"inlier_share", 0.0}};
-    return result;
-  }
-  const auto seeds = static_cast<double>(found.front().seeds);
-  const auto matches = static_cast<double>(found.front().all.size());
-  const auto inliers = static_cast<double>(found.front().placement.matches.size());
-  result.counts = {{"seeds", seeds},
-                   {"matches", matches},
-                   {"inliers", inliers},
-                   {"inlier_share", shareOf(inliers, matches)}};
-  result.all_matches = found.front().all;
-  if (options_.rematch) {
+  FlowResult result;
+  if (found.empty()) return result;
+  result.report.seeds = found.front().seeds;
+  result.report.first = countOf(found);
+  result.matches = found.front().all;
+  if (options.rematch) {
     found = search.rematch(found);
-    const double again = found.empty() ? 0.0 : static_cast<double>(found.front().all.size());
-    const double kept =
-        found.empty() ? 0.0 : static_cast<double>(found.front().placement.matches.size());
-    if (!found.empty()) result.all_rematches = found.front().all;
-    result.counts.insert(
-        result.counts.end(),
-        {{"rematches", again}, {"rematch_inliers", kept}, {"rematch_share", shareOf(kept, again)}});
+    if (!found.empty()) result.rematches = found.front().all;
+    result.report.again = countOf(found);
   }
   for (Found& one : found) result.placements.push_back(std::move(one.placement));
   return result;

@@ -2,7 +2,11 @@
 // part.
 #pragma once
 
-#include "agricolmap/locate/association.hpp"
+#include <optional>
+#include <vector>
+
+#include "agricolmap/core/monitor.hpp"
+#include "agricolmap/core/placement.hpp"
 #include "agricolmap/paper/describe/descriptor_map.hpp"
 #include "agricolmap/paper/flow/patch_match.hpp"
 #include "agricolmap/paper/vote/coherent_vote.hpp"
@@ -26,6 +30,29 @@ struct FlowAssociationOptions {
 };
 void describe(OptionTable& table, FlowAssociationOptions& options);
 
+/// Matches, and those of them that cohere.
+struct MatchCount {
+  std::size_t matches = 0;  ///< confirmed by the backward flow
+  std::size_t inliers = 0;  ///< of the best placement
+  double share() const {
+    return matches == 0 ? 0.0 : static_cast<double>(inliers) / static_cast<double>(matches);
+  }
+};
+
+/// What a flow and its vote were, for the report.
+struct FlowReport {
+  std::size_t seeds = 0;
+  MatchCount first;
+  std::optional<MatchCount> again;  ///< of the second matching, where there was one
+};
+
+struct FlowResult {
+  std::vector<Placement> placements;  ///< best first; empty when nothing coherent was found
+  std::vector<Match> matches;         ///< before the vote
+  std::vector<Match> rematches;       ///< the same of the second matching; empty without one
+  FlowReport report;
+};
+
 /// Descriptors are only so tolerant of turning and stretching. With `warps`, what the guess allows
 /// is cut into parts within the tolerances, and the moving map is matched once per part, warped to
 /// its middle. With `rematch`, what was found is confirmed with the moving map laid as found: right
@@ -33,18 +60,10 @@ void describe(OptionTable& table, FlowAssociationOptions& options);
 /// is the number of inliers, with warps that stretch the map counted as if they did not. With both
 /// off this is the paper's method.
 ///
-/// Fills the counts `seeds`, `matches` (confirmed by the backward flow), `inliers` of the best
-/// placement and `inlier_share` = inliers / matches, and runs the stages `describe`, `flow`,
-/// `vote`.
-class FlowAssociation : public locate::Association {
- public:
-  /// Throws UsageError for options outside their limits.
-  explicit FlowAssociation(const FlowAssociationOptions& options);
-  locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving,
-                                      const SearchSpace& space, StageTimes& times) const override;
-
- private:
-  FlowAssociationOptions options_;
-};
+/// Deterministic for a given seed, whatever the number of threads. Runs the stages kDescribe, kFlow
+/// and kVote.
+FlowResult associateByFlow(const map::GridMap& fixed, const map::GridMap& moving,
+                           const SearchSpace& space, const FlowAssociationOptions& options,
+                           Monitor& monitor);
 
 }  // namespace agricolmap::paper

@@ -12,9 +12,8 @@ void describe(OptionTable& table, RegistrationOptions& options) {
              "use heights alone, as clouds without colours need");
   table.choice("association", options.association, {"correlation", "flow"},
                "how the moving map is placed: global correlation search or the paper's flow");
-  table.choice(
-      "refine", options.refine, {"dense+cpd", "dense", "cpd", "none"},
-      "how the placement is refined: Gauss-Newton on the maps, CPD on the vegetation, or both");
+  table.choice("refine", options.refine, {"dense", "cpd"},
+               "how the placement is refined: Gauss-Newton on the maps, or CPD on the vegetation");
   table.group("prior", options.prior);
   table.group("level", options.level);
   table.group("grid", options.grid);
@@ -30,6 +29,16 @@ void describe(OptionTable& table, RegistrationOptions& options) {
   table.group("evidence", options.evidence);
   table.group("uncertainty", options.uncertainty);
   table.group("verdict", options.verdict);
+}
+
+RegistrationOptions inForce(const RegistrationOptions& options) {
+  checkOptions(options);
+  RegistrationOptions resolved = options;
+  if (options.geometry_only) {
+    resolved.signal.term = map::DataTerm::kHeight;
+    resolved.flow.describe.term = map::DataTerm::kHeight;
+  }
+  return resolved;
 }
 
 std::vector<std::string> presetNames() { return {"default", "paper", "paper-literal"}; }

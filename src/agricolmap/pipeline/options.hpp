@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "agricolmap/core/options.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/locate/correlation_search.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/map/hidden_ground.hpp"
@@ -23,9 +23,7 @@
 namespace agricolmap::pipeline {
 
 enum class AssociationKind { kCorrelation, kFlow };
-/// kDenseCpd: densely, then the mean of that and CPD from there, where the vegetation can be told
-/// from the soil.
-enum class RefineKind { kDenseCpd, kDense, kCpd, kNone };
+enum class RefineKind { kDense, kCpd };
 
 struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
@@ -48,6 +46,10 @@ struct RegistrationOptions {
   verdict::VerdictOptions verdict;
 };
 void describe(OptionTable& table, RegistrationOptions& options);
+
+/// The options as a registration takes them: with what some of them say about others. Throws
+/// UsageError for values outside their limits.
+RegistrationOptions inForce(const RegistrationOptions& options);
 
 /// Names of the presets: "default" measures best; "paper" is the paper's chain and parameters, with
 /// the moving map matched under several warps, which the range of errors that the paper reports

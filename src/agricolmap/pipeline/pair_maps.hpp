@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "agricolmap/core/cloud.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/map/level.hpp"
 

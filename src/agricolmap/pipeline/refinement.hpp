@@ -1,88 +1,40 @@
-// Stages 6 and 7: from placements to one refined pose.
+// From placements to one pose, as the options say: by the dense refinement, or as in the paper.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/core/placement.hpp"
+#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/refine/multi_start.hpp"
 
 namespace agricolmap::pipeline {
 
-/// A pose of the moving map, levelled moving → levelled fixed.
-struct RefinedPose {
-  Eigen::Affine2d pose = Eigen::Affine2d::Identity();
-  double significance = 0.0;  ///< whitened score at the ranking level, see EvidenceMeter
-  double overlap = 0.0;       ///< share of the moving map's cells with a fixed cell to compare with
+/// What Coherent Point Drift had and did, for the report.
+struct CpdReport {
+  std::size_t fixed_points = 0;  ///< of vegetation
+  std::size_t moving_points = 0;
+  std::size_t iterations = 0;
+  double matched_share = 0.0;
 };
 
 /// The winner, or why there is none.
-struct RefineOutcome {
-  std::optional<RefinedPose> best;
+struct Refined {
+  std::optional<refine::RefinedPose> best;
   /// Other places that held when refined to the ranking level, most significant first.
-  std::vector<RefinedPose> rivals;
+  std::vector<refine::RefinedPose> rivals;
+  std::size_t held = 0;  ///< placements that did, whether distinct or not
+  std::optional<CpdReport> cpd;
   std::string failure;  ///< in plain words when there is no winner
 };
 
-/// How well two maps fit under a pose.
-struct Fit {
-  double overlap = 0.0;      ///< share of the moving map's seen cells that the fixed map sees
-  double correlation = 0.0;  ///< of the signals of both channels over the overlap
-};
-
-/// Holds the signal maps of one pair at the cell sizes of the refinement.
-class PoseRefinement {
- public:
-  PoseRefinement(const map::GridMap& fixed, const map::GridMap& moving, const SearchSpace& space,
-                 const RegistrationOptions& options);
-
-  /// Estimates an affine from each placement (stage 6) and refines (stage 7): densely, all
-  /// placements through the coarse levels and the most significant one to the finest; or, as in the
-  /// paper, the placement with most votes by CPD on the vegetation points; or not at all.
-  RefineOutcome choose(const std::vector<Placement>& placements, StageTimes& times,
-                       std::vector<std::pair<std::string, double>>& counts) const;
-  /// Refines one pose densely, from the ranking level on; nothing when it does not hold.
-  std::optional<RefinedPose> refineFrom(const Eigen::Affine2d& pose) const;
-  /// What the verdict rests on, for the refined `pose` of an outcome. `height_residual`: robust
-  /// deviation of the ground's heights [m].
-  verdict::Finding examine(const Eigen::Affine2d& pose, const RefineOutcome& outcome,
-                           double height_residual) const;
-  /// At the ranking level: finer maps may be sparser than their cells.
-  Fit fit(const Eigen::Affine2d& pose) const;
-
- private:
-  struct Level {
-    map::SignalMap fixed;
-    map::SignalMap moving;
-  };
-  /// The fixed map where the pose puts the moving one, and `rim` more [m].
-  map::GridMap fixedUnder(const Eigen::Affine2d& pose, double rim) const;
-  /// Both maps at `factor` grid cells, the fixed one only where the pose puts the moving one.
-  Level levelUnder(const Eigen::Affine2d& pose, int factor) const;
-  std::optional<RefinedPose> refineAt(const Level& level, const RefinedPose& start,
-                                      bool across_basins = false) const;
-  /// The best of the poses and its rivals, at the ranking level.
-  RefineOutcome rank(const std::vector<std::optional<RefinedPose>>& poses) const;
-  RefineOutcome refineDensely(std::vector<std::optional<RefinedPose>> poses,
-                              std::vector<std::pair<std::string, double>>& counts) const;
-  /// Through the cells finer than the ranking level.
-  RefinedPose refineFinely(const RefinedPose& start) const;
-  /// Whether the point refinement's answer can stand beside the dense one's.
-  bool agrees(const RefinedPose& points, const RefinedPose& dense) const;
-  RefineOutcome refineByPoints(const RefinedPose& start,
-                               std::vector<std::pair<std::string, double>>& counts) const;
-
-  const map::GridMap& fixed_;
-  const map::GridMap& moving_;
-  map::GridMap
-      filled_;  ///< the moving map with what plants hide from its camera, for the fine levels
-  const SearchSpace& space_;
-  const RegistrationOptions& options_;
-  std::vector<Level> levels_;                      ///< of the whole maps, coarse to fine: 12, 6 cm
-  std::unique_ptr<verdict::EvidenceMeter> meter_;  ///< at the ranking level, the second
-};
+/// Refines densely, all placements through the coarse levels and the most significant one to the
+/// finest; or, as in the paper (Sec. IV), the placement with most votes by CPD on the vegetation
+/// points. Placements with matches start from the affine of these (Eq. 3).
+Refined refinePlacements(const refine::PairSignals& signals,
+                         const std::vector<Placement>& placements,
+                         const Eigen::Matrix2d& scale_axes, const RegistrationOptions& options);
 
 }  // namespace agricolmap::pipeline

@@ -3,26 +3,39 @@
 
 #include <Eigen/Geometry>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
-#include "agricolmap/core/stopwatch.hpp"
 #include "agricolmap/core/transform.hpp"
-#include "agricolmap/pipeline/options.hpp"
-#include "agricolmap/pipeline/pair_maps.hpp"
-#include "agricolmap/pipeline/placing.hpp"
+#include "agricolmap/pipeline/judgement.hpp"
+#include "agricolmap/pipeline/located.hpp"
+#include "agricolmap/pipeline/maps.hpp"
 
 namespace agricolmap::pipeline {
 
-/// What a registration found. `status == kRejected` with `has_transform == false`: no answer at
-/// all.
-struct Registration : PairOutcome {
+/// How an answer was come by.
+struct Trace {
+  std::size_t attempts = 0;  ///< searches, one after the other
+  Located located;           ///< by the search that the answer is from
+  std::size_t held = 0;      ///< placements that held when refined
+  std::optional<CpdReport> cpd;
+  std::optional<bool> straightened;  ///< see Measured
+};
+
+/// Where a moving map was placed, in the levelled frames.
+struct Outcome {
+  verdict::Verdict verdict;
+  std::optional<Placed> placed;             ///< nothing: no answer at all, and the verdict says why
+  std::vector<refine::RefinedPose> rivals;  ///< other places that held when refined
+  Trace trace;
+};
+
+/// The answer in the coordinates of the files.
+struct Transform {
   /// Moving file coordinates → fixed file coordinates [m].
-  Eigen::Affine3d fixed_from_moving;
+  Eigen::Affine3d fixed_from_moving = Eigen::Affine3d::Identity();
   /// The same between the local frames (about the clouds' origins).
-  Eigen::Affine3d local_fixed_from_moving;
+  Eigen::Affine3d local_fixed_from_moving = Eigen::Affine3d::Identity();
 
   // Parts, relative to the initial guess, at the middle of the moving map.
   HorizontalParts parts;  ///< yaw [rad], scales along the moving file's axes
@@ -31,21 +44,33 @@ struct Registration : PairOutcome {
       Eigen::Vector2d::Zero();  ///< slope between the ground planes [rad], x and y
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();   ///< of the moving map's middle [m]
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< that middle, fixed file coordinates [m]
+};
 
-  // Kept for pictures and reports.
-  PairFrames frames;
-  map::GridMap fixed_map;
-  map::GridMap moving_map;
-  SearchSpace space;
+/// Another place where the moving map fits.
+struct Alternative {
+  /// Moving file → fixed file coordinates [m].
+  Eigen::Affine3d fixed_from_moving = Eigen::Affine3d::Identity();
+  double significance = 0.0;  ///< see StripScore
+};
+
+/// What a registration found. A registration that fails has no `placed` and no `transform`.
+struct Registration {
+  verdict::Verdict verdict;
+  std::optional<Transform> transform;
+  std::optional<Placed> placed;  ///< what the transform rests on, wherever there is one
+  /// Other places, listed when the status is ambiguous, most significant first.
+  std::vector<Alternative> alternatives;
+  Trace trace;
+  PairMaps maps;  ///< for pictures and reports
 };
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.
 /// Throws InputError for clouds that cannot be used, UsageError for options outside their limits,
-/// Interrupted. A registration that fails is a rejected result, not an exception. `association`
-/// lets another data association stand in for the one that the options name, in the chain unchanged
-/// otherwise; nullptr: theirs.
+/// Interrupted when the monitor's token asks to stop. A registration that fails is a rejected
+/// result, not an exception. `locator` stands in for the search that the options name; empty:
+/// theirs.
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                            const RegistrationOptions& options, StageTimes& times,
-                            const locate::Association* association = nullptr);
+                            const RegistrationOptions& options, Monitor& monitor,
+                            const Locator& locator = {});
 
 }  // namespace agricolmap::pipeline

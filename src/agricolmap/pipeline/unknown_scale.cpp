@@ -38,4 +38,40 @@ std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed
   return factors;
 }
 
+Eigen::Affine3d scaledGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                            const PriorUncertainty& uncertainty, double factor) {
+  const Eigen::Affine3d centred = centredGuess(fixed, moving, guess, uncertainty);
+  const Eigen::Vector3d middle = meanOf(moving);
+  return centred * Eigen::Translation3d(middle) * Eigen::UniformScaling<double>(factor) *
+         Eigen::Translation3d(-middle);
+}
+
+double scaleOf(const ScaleTrial& trial, const Eigen::Matrix2d& scale_axes) {
+  const HorizontalParts parts =
+      splitHorizontal(scale_axes.transpose() * trial.outcome.placed->pose.linear() * scale_axes);
+  return trial.factor * std::sqrt(parts.scale_x * parts.scale_y);
+}
+
+ScaleTrial carriedOver(ScaleTrial trial, const PairFrames& frames, const map::Box2& box) {
+  // Levelled moving of now → levelled moving of then, in the plane.
+  const Eigen::Affine3d then_from_now =
+      trial.frames.levelled_from_moving * frames.levelled_from_moving.inverse();
+  Eigen::Affine2d plane = Eigen::Affine2d::Identity();
+  plane.linear() = then_from_now.linear().topLeftCorner<2, 2>();
+  plane.translation() = then_from_now.translation().head<2>();
+  const Placed& placed = *trial.outcome.placed;
+  Placement placement{
+      .pose = placed.pose * plane, .score = placed.evidence.significance, .matches = {}};
+  for (const double u : {0.0, 0.5, 1.0}) {
+    for (const double v : {0.0, 0.5, 1.0}) {
+      const Eigen::Vector2d point = box.min() + box.sizes().cwiseProduct(Eigen::Vector2d(u, v));
+      placement.matches.push_back({point, placement.pose * point});
+    }
+  }
+  trial.outcome.trace.located.placements = {placement};
+  for (refine::RefinedPose& rival : trial.outcome.rivals) rival.pose = rival.pose * plane;
+  trial.frames = frames;
+  return trial;
+}
+
 }  // namespace agricolmap::pipeline

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "agricolmap/locate/association.hpp"
-#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/core/search_space.hpp"
+#include "agricolmap/pipeline/registration.hpp"
 
 namespace agricolmap::pipeline {
 
@@ -15,5 +15,25 @@ namespace agricolmap::pipeline {
 /// to hold anything that could be recognised, are left out.
 std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed,
                                  const PriorUncertainty& uncertainty);
+
+/// The guess with the moving cloud made larger about its middle; where the guess leaves the place
+/// open, centred (see centredGuess).
+Eigen::Affine3d scaledGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                            const PriorUncertainty& uncertainty, double factor);
+
+/// What one factor led to.
+struct ScaleTrial {
+  double factor = 1.0;
+  PairFrames frames;
+  Outcome outcome;
+};
+
+/// The factor by which the moving file is to be enlarged, as far as a trial tells.
+double scaleOf(const ScaleTrial& trial, const Eigen::Matrix2d& scale_axes);
+
+/// Moves what a trial found from the trial's levelled frame of the moving map into that of
+/// `frames`, after the moving cloud was levelled anew: its place as the only placement, and its
+/// rivals.
+ScaleTrial carriedOver(ScaleTrial trial, const PairFrames& frames, const map::Box2& box);
 
 }  // namespace agricolmap::pipeline

@@ -3,8 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "agricolmap/core/parallel.hpp"
-
 namespace agricolmap::refine {
 namespace {
 
@@ -78,14 +76,13 @@ DenseRefineResult refineAcrossBasins(const map::SignalMap& fixed, const map::Sig
   const Footprint print = footprintOf(moving);
   const double length = options.hop * moving.frame.cell;
   for (int round = 0; round < options.hops; ++round) {
-    std::array<DenseRefineResult, kHops> tried;
-    parallelFor(tried.size(), [&](std::size_t i) {
-      tried[i] = refineDense(
-          fixed, moving, best.fixed_from_moving * hop(print, static_cast<int>(i), length), options);
-    });
+    std::array<Eigen::Affine2d, kHops> starts;
+    for (int i = 0; i < kHops; ++i) {
+      starts[static_cast<std::size_t>(i)] = best.fixed_from_moving * hop(print, i, length);
+    }
     const double before = best.correlation;
     const double least_overlap = kLeastOverlap * best.overlap;
-    for (const DenseRefineResult& one : tried) {
+    for (const DenseRefineResult& one : refineEach(fixed, moving, starts, options)) {
       if (one.status != RefineStatus::kConverged || one.overlap < least_overlap) continue;
       if (one.correlation > best.correlation) best = one;
     }

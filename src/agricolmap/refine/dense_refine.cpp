@@ -302,4 +302,13 @@ DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap&
   return result;
 }
 
+std::vector<DenseRefineResult> refineEach(const map::SignalMap& fixed, const map::SignalMap& moving,
+                                          std::span<const Eigen::Affine2d> starts,
+                                          const DenseRefineOptions& options) {
+  std::vector<DenseRefineResult> results(starts.size());
+  parallelFor(starts.size(),
+              [&](std::size_t i) { results[i] = refineDense(fixed, moving, starts[i], options); });
+  return results;
+}
+
 }  // namespace agricolmap::refine

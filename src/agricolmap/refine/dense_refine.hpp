@@ -1,9 +1,9 @@
-// Stage 7b: dense refinement: Gauss–Newton on the signal maps themselves, coarse to fine, for a
+// Dense refinement: Gauss–Newton on the signal maps themselves, coarse to fine, for a
 // horizontal affine. Robust against what the two views do not share (leaves, weeds, shadows).
 #pragma once
 
 #include <Eigen/Geometry>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "agricolmap/core/options.hpp"
@@ -40,5 +40,10 @@ struct DenseRefineResult {
 /// where the fixed map is calm, the more the less the maps have in common (ExG of drilled wheat).
 DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap& moving,
                               const Eigen::Affine2d& start, const DenseRefineOptions& options);
+
+/// The same from every start, side by side; results in the order of the starts.
+std::vector<DenseRefineResult> refineEach(const map::SignalMap& fixed, const map::SignalMap& moving,
+                                          std::span<const Eigen::Affine2d> starts,
+                                          const DenseRefineOptions& options);
 
 }  // namespace agricolmap::refine

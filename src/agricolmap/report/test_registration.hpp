@@ -41,21 +41,20 @@ inline void addMatches(pipeline::Registration& result, const TestStrip& strip,
           centre + rotation2(strip.heading) * Eigen::Vector2d(u * strip.length, v * strip.width);
       const Eigen::Vector2d noise(random.normal(0.02), random.normal(0.02));
       const Eigen::Vector2d wrong(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
-      winner.matches.push_back({moving, result.pose * moving + noise});
-      result.association.all_matches.push_back(winner.matches.back());
-      result.association.all_matches.push_back({moving, moving + wrong});
+      winner.matches.push_back({moving, result.placed->pose * moving + noise});
+      result.trace.located.matches.push_back(winner.matches.back());
+      result.trace.located.matches.push_back({moving, moving + wrong});
     }
   }
   winner.score = static_cast<double>(winner.matches.size());
   Placement loser;
   loser.matches = {{centre, centre}};
-  result.association.placements = {loser, winner};
-  result.association.counts = {
-      {"seeds", 800.0},
-      {"matches", static_cast<double>(result.association.all_matches.size())},
-      {"inliers", winner.score},
-      {"inlier_share", 0.5}};
-  result.counts = result.association.counts;
+  result.trace.located.flow = {
+      .seeds = 800,
+      .first = {result.trace.located.matches.size(), winner.matches.size()},
+      .again = {}};
+  result.trace.located.placements = {loser, winner};
+  result.placed->placement = 1;
 }
 
 /// Blocks along the strip, one in six of which disagrees.
@@ -66,16 +65,19 @@ inline void addEvidence(pipeline::Registration& result, const TestStrip& strip,
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector2d along(((i + 0.5) / count - 0.5) * strip.length, 0.0);
     verdict::BlockEvidence block;
-    block.place = result.pose * (centre + rotation2(strip.heading) * along);
+    block.place = result.placed->pose * (centre + rotation2(strip.heading) * along);
     block.agrees = i % 6 != 2;
     const double size = block.agrees ? 0.04 : 0.3;
     block.offset = {random.uniform(-size, size), random.uniform(-size, size)};
-    if (block.agrees) ++result.evidence.agreeing;
-    result.evidence.blocks.push_back(block);
+    if (block.agrees) ++result.placed->evidence.agreeing;
+    result.placed->evidence.blocks.push_back(block);
   }
-  result.evidence.block_side = 1.2;
-  result.evidence.significance = 21.5;
-  result.evidence.uniqueness = 2.4;
+  result.placed->evidence.strip = {
+      centre, rotation2(strip.heading), {0.5 * strip.length, 0.5 * strip.width}};
+  result.placed->evidence.block_side = 1.2;
+  result.placed->evidence.block_size = {1.2, 0.8};
+  result.placed->evidence.significance = 21.5;
+  result.placed->evidence.uniqueness = 2.4;
 }
 
 /// An accepted registration with the true answer.
@@ -85,37 +87,39 @@ inline pipeline::Registration testRegistration(const TestStrip& strip = {}) {
   const Truth truth = growField(field);
   const Eigen::Vector2d centre = Eigen::Vector2d::Constant(0.48 * strip.field);
   pipeline::Registration result;
-  result.pose = guessError(centre, {0.9, -0.6}, 0.06, 1.08, 0.94);
-  result.fixed_map = viewOf(
+  result.placed.emplace();
+  result.transform.emplace();
+  result.placed->pose = guessError(centre, {0.9, -0.6}, 0.06, 1.08, 0.94);
+  result.maps.fixed = viewOf(
       truth, field, map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(strip.field)),
       Eigen::Affine2d::Identity(), 0.02, 1);
   const double c = std::abs(std::cos(strip.heading));
   const double s = std::abs(std::sin(strip.heading));
   const Eigen::Vector2d half(0.5 * (c * strip.length + s * strip.width),
                              0.5 * (s * strip.length + c * strip.width));
-  result.moving_map =
-      viewOf(truth, field, map::Box2(centre - half, centre + half), result.pose, 0.1, 2);
-  cutStrip(result.moving_map, strip, centre);
-  result.space.centre = centre;
-  result.has_transform = true;
+  result.maps.moving =
+      viewOf(truth, field, map::Box2(centre - half, centre + half), result.placed->pose, 0.1, 2);
+  cutStrip(result.maps.moving, strip, centre);
+  result.maps.space.centre = centre;
   Eigen::Affine3d lifted = Eigen::Affine3d::Identity();
-  lifted.linear().topLeftCorner<2, 2>() = result.pose.linear();
-  lifted.translation().head<2>() = result.pose.translation();
+  lifted.linear().topLeftCorner<2, 2>() = result.placed->pose.linear();
+  lifted.translation().head<2>() = result.placed->pose.translation();
   lifted.translation().z() = 0.12;
-  result.local_fixed_from_moving = lifted;
+  result.transform->local_fixed_from_moving = lifted;
   const Eigen::Vector3d origin(432000.1, 5200000.2, 400.3);
-  result.fixed_from_moving = Eigen::Translation3d(origin) * lifted * Eigen::Translation3d(-origin);
-  result.frames.levelled_from_fixed.setIdentity();
-  result.frames.levelled_from_moving.setIdentity();
-  result.parts = splitHorizontal(result.pose.linear());
-  result.shift = {0.9, -0.6, 0.12};
-  result.centre = origin + Eigen::Vector3d(centre.x() + 0.9, centre.y() - 0.6, 0.12);
-  result.tilt = {0.01, -0.02};
-  result.overlap = 0.97;
-  result.correlation = 0.68;
-  result.vertical.status = refine::VerticalStatus::kOk;
-  result.vertical.residual = 0.013;
-  result.vertical.cells = 12345;
+  result.transform->fixed_from_moving =
+      Eigen::Translation3d(origin) * lifted * Eigen::Translation3d(-origin);
+  result.maps.frames.levelled_from_fixed.setIdentity();
+  result.maps.frames.levelled_from_moving.setIdentity();
+  result.transform->parts = splitHorizontal(result.placed->pose.linear());
+  result.transform->shift = {0.9, -0.6, 0.12};
+  result.transform->centre = origin + Eigen::Vector3d(centre.x() + 0.9, centre.y() - 0.6, 0.12);
+  result.transform->tilt = {0.01, -0.02};
+  result.placed->overlap = 0.97;
+  result.placed->correlation = 0.68;
+  result.placed->heights.status = refine::VerticalStatus::kOk;
+  result.placed->heights.residual = 0.013;
+  result.placed->heights.cells = 12345;
   addMatches(result, strip, centre);
   addEvidence(result, strip, centre);
   result.verdict = {verdict::Status::kAccepted,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "agricolmap/core/options.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/verdict/evidence.hpp"
 

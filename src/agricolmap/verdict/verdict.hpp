@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "agricolmap/core/options.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/verdict/evidence.hpp"
 #include "agricolmap/verdict/probability.hpp"
 #include "agricolmap/verdict/uncertainty.hpp"

@@ -59,28 +59,28 @@ FlowAssociationOptions plainOptions() {
 TEST(Flow, FindsShiftAsThePaperDoes) {
   const Eigen::Affine2d pose = guessError(kCentre, {2.0, -1.5}, 0.0, 1.0, 1.0);
   const Scene scene = sceneOf(pose, {.translation = 3.0, .heading_deg = 5.0, .scale = 0.1});
-  StageTimes times;
+  Monitor monitor;
   const auto result =
-      FlowAssociation(plainOptions()).associate(scene.fixed, scene.moving, scene.space, times);
+      associateByFlow(scene.fixed, scene.moving, scene.space, plainOptions(), monitor);
   ASSERT_FALSE(result.placements.empty());
-  EXPECT_GT(result.all_matches.size(), 800U);
-  EXPECT_GT(shareRight(result.all_matches, pose, 0.1), 0.7);
+  EXPECT_GT(result.matches.size(), 800U);
+  EXPECT_GT(shareRight(result.matches, pose, 0.1), 0.7);
   EXPECT_GT(shareRight(result.placements.front().matches, pose, 0.1), 0.98);
-  ASSERT_EQ(result.counts.size(), 4U);
-  EXPECT_EQ(result.counts[0].first, "seeds");
-  EXPECT_EQ(result.counts[1].second, static_cast<double>(result.all_matches.size()));
-  EXPECT_EQ(result.counts[2].second, result.placements.front().score);
-  ASSERT_EQ(times.stages().size(), 3U);
-  EXPECT_EQ(times.stages()[0].first, "describe");
-  EXPECT_EQ(times.stages()[1].first, "flow");
-  EXPECT_EQ(times.stages()[2].first, "vote");
+  EXPECT_GT(result.report.seeds, result.matches.size() / 2);
+  EXPECT_EQ(result.report.first.matches, result.matches.size());
+  EXPECT_EQ(result.report.first.inliers, result.placements.front().matches.size());
+  EXPECT_FALSE(result.report.again);
+  ASSERT_EQ(monitor.times().size(), 3U);
+  EXPECT_EQ(monitor.times()[0].stage, Stage::kDescribe);
+  EXPECT_EQ(monitor.times()[1].stage, Stage::kFlow);
+  EXPECT_EQ(monitor.times()[2].stage, Stage::kVote);
 }
 
 TEST(Flow, FindsAffineWithWarpsAndRematch) {
   const Eigen::Affine2d pose = guessError(kCentre, {-1.5, 1.0}, 0.2, 0.75, 1.25);
   const Scene scene = sceneOf(pose, {.translation = 2.5, .heading_deg = 11.5, .scale = 0.3});
-  StageTimes times;
-  const auto result = FlowAssociation({}).associate(scene.fixed, scene.moving, scene.space, times);
+  Monitor monitor;
+  const auto result = associateByFlow(scene.fixed, scene.moving, scene.space, {}, monitor);
   ASSERT_FALSE(result.placements.empty());
   const Placement& best = result.placements.front();
   EXPECT_GT(shareRight(best.matches, pose, 0.1), 0.98);
@@ -103,12 +103,12 @@ TEST(Flow, SameOnAnyNumberOfThreads) {
   const auto run = [&](int seed) {
     FlowAssociationOptions options;
     options.seed = seed;
-    StageTimes times;
-    return FlowAssociation(options).associate(scene.fixed, scene.moving, scene.space, times);
+    Monitor monitor;
+    return associateByFlow(scene.fixed, scene.moving, scene.space, options, monitor);
   };
-  const auto same = [](const locate::AssociationResult& a, const locate::AssociationResult& b) {
-    return a.all_matches.size() == b.all_matches.size() &&
-           std::equal(a.all_matches.begin(), a.all_matches.end(), b.all_matches.begin(),
+  const auto same = [](const FlowResult& a, const FlowResult& b) {
+    return a.matches.size() == b.matches.size() &&
+           std::equal(a.matches.begin(), a.matches.end(), b.matches.begin(),
                       [](const Match& m, const Match& n) {
                         return m.moving == n.moving && m.fixed == n.fixed;
                       });
@@ -123,13 +123,10 @@ TEST(Flow, NothingWhereTheMapsDoNotMeet) {
   Scene scene = sceneOf(Eigen::Affine2d::Identity(), {.translation = 1.0});
   scene.moving.frame.corner += Eigen::Vector2d(100.0, 0.0);
   scene.space.centre += Eigen::Vector2d(100.0, 0.0);
-  StageTimes times;
-  const auto result = FlowAssociation({}).associate(scene.fixed, scene.moving, scene.space, times);
+  Monitor monitor;
+  const auto result = associateByFlow(scene.fixed, scene.moving, scene.space, {}, monitor);
   EXPECT_TRUE(result.placements.empty());
-  EXPECT_EQ(result.counts[2].second, 0.0);
-  FlowAssociationOptions bad;
-  bad.flow.levels = 0;
-  EXPECT_THROW(FlowAssociation{bad}, UsageError);
+  EXPECT_EQ(result.report.first.inliers, 0U);
 }
 
 TEST(Reach, SamplesStayInTheBoxes) {

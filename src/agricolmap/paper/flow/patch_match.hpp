@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "agricolmap/core/placement.hpp"
 #include "agricolmap/paper/describe/descriptor_map.hpp"
 #include "agricolmap/paper/flow/match_cost.hpp"
 #include "agricolmap/paper/flow/reach.hpp"

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::paper {
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/draw/utf8.hpp"
 
 namespace agricolmap::report {
@@ -65,39 +66,35 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::G
 
 Json transformJson(const Cloud& fixed, const Cloud& moving,
                    const pipeline::Registration& registration) {
-  if (!registration.has_transform) return nullptr;
+  if (!registration.transform.has_value()) return nullptr;
   Json json;
-  json["matrix"] = matrixJson(registration.fixed_from_moving.matrix());
-  json["local"] = {{"matrix", matrixJson(registration.local_fixed_from_moving.matrix())},
+  json["matrix"] = matrixJson(registration.transform->fixed_from_moving.matrix());
+  json["local"] = {{"matrix", matrixJson(registration.transform->local_fixed_from_moving.matrix())},
                    {"fixed_origin_m", vectorJson(fixed.origin)},
                    {"moving_origin_m", vectorJson(moving.origin)}};
-  const HorizontalParts& parts = registration.parts;
-  const Eigen::Vector2d& tilt = registration.tilt;
+  const HorizontalParts& parts = registration.transform->parts;
+  const Eigen::Vector2d& tilt = registration.transform->tilt;
   json["parts"] = {{"yaw_deg", number(parts.yaw * kDegPerRad)},
                    {"tilt_x_deg", number(tilt.x() * kDegPerRad)},
                    {"tilt_y_deg", number(tilt.y() * kDegPerRad)},
                    {"scale_x", number(parts.scale_x)},
                    {"scale_y", number(parts.scale_y)},
-                   {"scale_z", number(registration.vertical_scale)},
+                   {"scale_z", number(registration.transform->vertical_scale)},
                    {"shear", number(parts.shear)},
-                   {"shift_m", vectorJson(registration.shift)},
-                   {"centre_m", vectorJson(registration.centre)}};
+                   {"shift_m", vectorJson(registration.transform->shift)},
+                   {"centre_m", vectorJson(registration.transform->centre)}};
   return json;
 }
 
-/// Root mean square distance of the matches behind the pose from where the pose puts them [m].
+/// Root mean square distance of the matches behind the pose from where the pose puts them [m]; NaN
+/// where a search found it as a whole.
 double matchResidual(const pipeline::Registration& registration) {
-  double best = std::numeric_limits<double>::quiet_NaN();
-  for (const Placement& placement : registration.association.placements) {
-    if (placement.matches.empty()) continue;
-    double sum = 0.0;
-    for (const Match& match : placement.matches) {
-      sum += (registration.pose * match.moving - match.fixed).squaredNorm();
-    }
-    const double rms = std::sqrt(sum / static_cast<double>(placement.matches.size()));
-    if (!(rms >= best)) best = rms;
+  const std::vector<Match>& matches = winnerOf(registration).matches;
+  double sum = 0.0;
+  for (const Match& match : matches) {
+    sum += (registration.placed->pose * match.moving - match.fixed).squaredNorm();
   }
-  return best;
+  return std::sqrt(sum / static_cast<double>(matches.size()));
 }
 
 /// Root mean square offset of the agreeing blocks [m].
@@ -122,14 +119,14 @@ const char* toString(refine::VerticalStatus status) {
 }
 
 Json residualsJson(const pipeline::Registration& registration) {
-  if (!registration.has_transform) return nullptr;
+  if (!registration.transform.has_value()) return nullptr;
   Json json;
-  json["correlation"] = number(registration.correlation);
-  json["signal"] = number(std::sqrt(2.0 - 2.0 * registration.correlation));
-  json["overlap"] = number(registration.overlap);
+  json["correlation"] = number(registration.placed->correlation);
+  json["signal"] = number(std::sqrt(2.0 - 2.0 * registration.placed->correlation));
+  json["overlap"] = number(registration.placed->overlap);
   json["match_rms_m"] = number(matchResidual(registration));
-  json["block_rms_m"] = number(blockResidual(registration.evidence));
-  const refine::VerticalResult& vertical = registration.vertical;
+  json["block_rms_m"] = number(blockResidual(registration.placed->evidence));
+  const refine::VerticalResult& vertical = registration.placed->heights;
   json["vertical"] = {{"status", toString(vertical.status)},
                       {"residual_m", number(vertical.residual)},
                       {"cells", vertical.cells},
@@ -156,8 +153,8 @@ Json evidenceJson(const verdict::Evidence& evidence) {
 
 /// Of (shift_x, shift_y, shift_z [m], yaw [rad], scale_x, scale_y [relative]).
 Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registration) {
-  if (!registration.has_transform || !registration.uncertainty) return nullptr;
-  const verdict::PoseUncertainty& uncertainty = *registration.uncertainty;
+  if (!registration.transform.has_value() || !registration.placed->uncertainty) return nullptr;
+  const verdict::PoseUncertainty& uncertainty = *registration.placed->uncertainty;
   constexpr std::array<int, 5> kPlace = {0, 1, 3, 4, 5};
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   for (int i = 0; i < 5; ++i) {
@@ -165,10 +162,10 @@ Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registrat
   }
   covariance(2, 2) = uncertainty.height_deviation * uncertainty.height_deviation;
   // The levelled frame is turned into the file's by a tilt alone.
-  const Eigen::Affine3d file_from_levelled = registration.frames.levelled_from_fixed.inverse();
+  const Eigen::Affine3d file_from_levelled = registration.maps.frames.levelled_from_fixed.inverse();
   const Eigen::Vector3d centre =
-      file_from_levelled *
-      Eigen::Vector3d(uncertainty.centre.x(), uncertainty.centre.y(), registration.vertical.offset);
+      file_from_levelled * Eigen::Vector3d(uncertainty.centre.x(), uncertainty.centre.y(),
+                                           registration.placed->heights.offset);
   Json json;
   json["parameters"] = {"shift_x_m", "shift_y_m", "shift_z_m", "yaw_rad", "scale_x", "scale_y"};
   json["covariance"] = matrixJson(covariance);
@@ -184,28 +181,30 @@ Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registrat
 Json alternativesJson(const pipeline::Registration& registration) {
   Json json = Json::array();
   for (const pipeline::Alternative& other : registration.alternatives) {
-    json.push_back({{"matrix", matrixJson(other.fixed_from_moving.matrix())},
-                    {"significance", number(other.significance)},
-                    {"relative", number(other.significance / registration.evidence.significance)}});
+    json.push_back(
+        {{"matrix", matrixJson(other.fixed_from_moving.matrix())},
+         {"significance", number(other.significance)},
+         {"relative", number(other.significance / registration.placed->evidence.significance)}});
   }
   return json;
 }
 
-Json numbersJson(const std::vector<std::pair<std::string, double>>& numbers,
-                 const std::string& suffix) {
+Json countsJson(const pipeline::Registration& registration) {
   Json json = Json::object();
-  for (const auto& [name, value] : numbers) {
+  for (const auto& [name, value] : countsOf(registration)) {
     // Counts as whole numbers: "6012", not "6012.0".
-    const bool whole = suffix.empty() && std::abs(value) < 1e15 && value == std::floor(value);
-    json[validUtf8(name) + suffix] = whole ? Json(static_cast<std::int64_t>(value)) : number(value);
+    const bool whole = std::abs(value) < 1e15 && value == std::floor(value);
+    json[name] = whole ? Json(static_cast<std::int64_t>(value)) : number(value);
   }
   return json;
 }
 
-Json timesJson(const StageTimes& times) {
-  double total = 0.0;
-  for (const auto& [stage, seconds] : times.stages()) total += seconds;
-  return {{"total_s", number(total)}, {"stages", numbersJson(times.stages(), "_s")}};
+Json timesJson(const Monitor& monitor) {
+  Json stages = Json::object();
+  for (const StageTime& time : monitor.times()) {
+    stages[std::string(nameOf(time.stage)) + "_s"] = number(time.seconds);
+  }
+  return {{"total_s", number(monitor.seconds())}, {"stages", stages}};
 }
 
 std::size_t threadsInForce(int asked) {
@@ -217,7 +216,7 @@ std::size_t threadsInForce(int asked) {
 
 nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
                                         const pipeline::Registration& registration,
-                                        const StageTimes& times,
+                                        const Monitor& monitor,
                                         const RegistrationReportInfo& info) {
   Json json;
   json["format"] = "agricolmap-registration";
@@ -232,11 +231,12 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["prior"] = {{"matrix", matrixJson(info.prior.matrix())},
                    {"source", validUtf8(info.prior_source)}};
   json["residuals"] = residualsJson(registration);
-  json["evidence"] = evidenceJson(registration.evidence);
-  json["counts"] = numbersJson(registration.counts, "");
-  json["fixed"] = cloudJson(fixed, registration.frames.fixed, registration.fixed_map);
-  json["moving"] = cloudJson(moving, registration.frames.moving, registration.moving_map);
-  json["times"] = timesJson(times);
+  json["evidence"] =
+      evidenceJson(registration.placed ? registration.placed->evidence : verdict::Evidence{});
+  json["counts"] = countsJson(registration);
+  json["fixed"] = cloudJson(fixed, registration.maps.frames.fixed, registration.maps.fixed);
+  json["moving"] = cloudJson(moving, registration.maps.frames.moving, registration.maps.moving);
+  json["times"] = timesJson(monitor);
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = threadsInForce(info.threads);
   json["pictures"] = stringsJson(info.pictures);
@@ -249,9 +249,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
 }
 
 void writeRegistrationJson(const io::OutputPath& path, const Cloud& fixed, const Cloud& moving,
-                           const pipeline::Registration& registration, const StageTimes& times,
+                           const pipeline::Registration& registration, const Monitor& monitor,
                            const RegistrationReportInfo& info) {
-  io::writeText(path, registrationJson(fixed, moving, registration, times, info).dump(2) + "\n");
+  io::writeText(path, registrationJson(fixed, moving, registration, monitor, info).dump(2) + "\n");
 }
 
 std::size_t peakMemoryBytes() {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
-#include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/core/monitor.hpp"
 #include "agricolmap/io/output/output_path.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
@@ -33,12 +33,11 @@ struct RegistrationReportInfo {
 /// valid UTF-8.
 nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
                                         const pipeline::Registration& registration,
-                                        const StageTimes& times,
-                                        const RegistrationReportInfo& info);
+                                        const Monitor& monitor, const RegistrationReportInfo& info);
 
 /// Writes it, indented. Throws OutputError.
 void writeRegistrationJson(const io::OutputPath& path, const Cloud& fixed, const Cloud& moving,
-                           const pipeline::Registration& registration, const StageTimes& times,
+                           const pipeline::Registration& registration, const Monitor& monitor,
                            const RegistrationReportInfo& info);
 
 /// Most memory that the process ever held [bytes]; 0 where the system does not tell.

@@ -25,27 +25,19 @@ double exaggeration(const verdict::EvidenceOptions& options) {
   return std::max(1.0, std::floor(0.35 * options.block / options.agreement));
 }
 
-/// Sides of the blocks along and across the strip, as cutBlocks cuts them.
-Eigen::Vector2d blockSize(const GroundRect& strip, double side) {
-  const auto cut = [&](double half) {
-    return 2.0 * half / std::max(1.0, std::round(2.0 * half / side));
-  };
-  return {cut(strip.half_extent.x()), cut(strip.half_extent.y())};
-}
-
 /// Turned like the blocks; the outline and every block with a rim.
 GroundRect blocksGround(const Scene& scene) {
   const pipeline::Registration& result = scene.registration;
   GroundRect ground;
-  ground.axes.col(0) = (result.pose.linear() * scene.block_strip.axes.col(0)).normalized();
+  ground.axes.col(0) = (result.placed->pose.linear() * scene.block_strip.axes.col(0)).normalized();
   if (ground.axes(0, 0) < 0.0) ground.axes.col(0) = -ground.axes.col(0);
   ground.axes.col(1) = Eigen::Vector2d(-ground.axes(1, 0), ground.axes(0, 0));
   map::Box2 box;
-  for (const Eigen::Vector2d& corner : scene.outlineUnder(result.pose)) {
+  for (const Eigen::Vector2d& corner : scene.outlineUnder(result.placed->pose)) {
     box.extend((ground.axes.transpose() * corner).eval());
   }
   const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5 * scene.info.evidence.block);
-  for (const verdict::BlockEvidence& block : result.evidence.blocks) {
+  for (const verdict::BlockEvidence& block : result.placed->evidence.blocks) {
     const Eigen::Vector2d local = ground.axes.transpose() * block.place;
     box.extend((local - half).eval());
     box.extend((local + half).eval());
@@ -73,7 +65,7 @@ void paintStrip(PictureCanvas& canvas, const Scene& scene, const View& view) {
 void drawBlock(PictureCanvas& canvas, const Scene& scene, const View& view,
                const verdict::BlockEvidence& block, const Eigen::Vector2d& size) {
   const Colour colour = block.agrees ? kAgrees : kDisagrees;
-  const Eigen::Matrix2d linear = scene.registration.pose.linear() * scene.block_strip.axes;
+  const Eigen::Matrix2d linear = scene.registration.placed->pose.linear() * scene.block_strip.axes;
   std::array<Eigen::Vector2d, 4> corners;
   constexpr std::array<std::array<double, 2>, 4> kSigns = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -93,14 +85,14 @@ void drawBlock(PictureCanvas& canvas, const Scene& scene, const View& view,
 }
 
 std::vector<std::pair<std::string, std::string>> figures(const pipeline::Registration& result) {
-  const verdict::Evidence& evidence = result.evidence;
+  const verdict::Evidence& evidence = result.placed->evidence;
   return {
       {"blocks that agree", fmt::format("{} of {}", evidence.agreeing, evidence.blocks.size())},
       {"uniqueness (peak / next peak)", fmt::format("{:.2f}", evidence.uniqueness)},
       {"significance (peak / deviation)", fmt::format("{:.1f}", evidence.significance)},
       {"probability of being right", fmt::format("{:.1f} %", 100.0 * result.verdict.probability)},
-      {"overlap", fmt::format("{:.0f} %", 100.0 * result.overlap)},
-      {"correlation", fmt::format("{:.2f}", result.correlation)}};
+      {"overlap", fmt::format("{:.0f} %", 100.0 * result.placed->overlap)},
+      {"correlation", fmt::format("{:.2f}", result.placed->correlation)}};
 }
 
 const char* headline(verdict::Status status) {
@@ -156,12 +148,12 @@ void writeBlocksPicture(const io::OutputPath& path, const Scene& scene) {
   paintStrip(canvas, scene, view);
   {
     const PictureCanvas::Clip clip(canvas, view.rect);
-    const Eigen::Vector2d size = blockSize(scene.block_strip, result.evidence.block_side);
-    for (const verdict::BlockEvidence& block : result.evidence.blocks) {
+    const Eigen::Vector2d& size = result.placed->evidence.block_size;
+    for (const verdict::BlockEvidence& block : result.placed->evidence.blocks) {
       drawBlock(canvas, scene, view, block, size);
     }
   }
-  if (result.evidence.blocks.empty()) {
+  if (result.placed->evidence.blocks.empty()) {
     canvas.text(view.rect.middle(), "no block is seen well enough in both maps",
                 {16.0, hexColour(0xffffff), true, Align::kCentre});
   }

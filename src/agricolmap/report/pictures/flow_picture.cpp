@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/draw/page.hpp"
 #include "agricolmap/report/pictures/picture_kinds.hpp"
 
@@ -24,8 +25,9 @@ constexpr Colour kWinnerColour = hexColour(0x3ff07a, 0.9);
 GroundRect region(const Scene& scene) {
   map::Box2 box;
   for (const auto& corner : scene.outlineUnder(Eigen::Affine2d::Identity())) box.extend(corner);
-  if (scene.registration.has_transform) {
-    for (const auto& corner : scene.outlineUnder(scene.registration.pose)) box.extend(corner);
+  if (scene.registration.transform.has_value()) {
+    for (const auto& corner : scene.outlineUnder(scene.registration.placed->pose))
+      box.extend(corner);
   }
   return GroundRect{box.center(), Eigen::Matrix2d::Identity(), 0.5 * box.sizes()}.grown(kRim);
 }
@@ -61,11 +63,9 @@ std::vector<Eigen::Vector2d> lineEnds(const std::vector<Match>& matches, std::si
 }
 
 void drawMatches(PictureCanvas& canvas, const Scene& scene, const View& view) {
-  canvas.lines(lineEnds(scene.registration.association.all_matches, kMaxMatches, view),
+  canvas.lines(lineEnds(scene.registration.trace.located.matches, kMaxMatches, view),
                {1.0, kMatchColour, {}});
-  const Placement* winner = scene.registration.has_transform ? scene.winner() : nullptr;
-  if (winner == nullptr) return;
-  const auto ends = lineEnds(winner->matches, kMaxWinners, view);
+  const auto ends = lineEnds(scene.winningMatches(), kMaxWinners, view);
   canvas.lines(ends, {1.4, kWinnerColour, {}});
   for (std::size_t i = 1; i < ends.size(); i += 2) canvas.disc(ends[i], 2.5, kWinnerColour);
 }
@@ -81,7 +81,7 @@ void drawFlow(PictureCanvas& canvas, const Scene& scene, const View& view) {
       const Eigen::Vector2d from =
           strip.centre + strip.axes * local.cwiseProduct(strip.half_extent);
       const Eigen::Vector2d tail = view.pixel(from);
-      const Eigen::Vector2d head = view.pixel(scene.registration.pose * from);
+      const Eigen::Vector2d head = view.pixel(scene.registration.placed->pose * from);
       canvas.arrow(tail, head, {4.0, hexColour(0x000000, 0.55), {}});
       canvas.arrow(tail, head, {2.2, palette::kAfter, {}});
     }
@@ -107,21 +107,20 @@ void drawSidebar(PictureCanvas& canvas, const Scene& scene, int x, int top) {
   const pipeline::Registration& result = scene.registration;
   std::vector<LegendItem> items = {
       {LegendItem::Kind::kLine, palette::kBefore, "moving map by the guess", {6.0, 4.0}}};
-  if (result.has_transform) {
+  if (result.transform.has_value()) {
     items.push_back({LegendItem::Kind::kLine, palette::kAfter, "moving map registered", {}});
     items.push_back({LegendItem::Kind::kArrow, palette::kAfter, "how it was moved", {}});
   }
-  if (!result.association.all_matches.empty()) {
+  if (!result.trace.located.matches.empty()) {
     items.push_back({LegendItem::Kind::kLine,
                      kMatchColour,
-                     matchText(result.association.all_matches.size(), kMaxMatches, "matches"),
+                     matchText(result.trace.located.matches.size(), kMaxMatches, "matches"),
                      {}});
   }
-  const Placement* winner = result.has_transform ? scene.winner() : nullptr;
-  if (winner != nullptr) {
+  if (!scene.winningMatches().empty()) {
     items.push_back({LegendItem::Kind::kLine,
                      kWinnerColour,
-                     matchText(winner->matches.size(), kMaxWinners, "winning matches"),
+                     matchText(scene.winningMatches().size(), kMaxWinners, "winning matches"),
                      {}});
   }
   drawLegend(canvas, {static_cast<double>(x), top + 13.0}, items, true);
@@ -131,15 +130,17 @@ void drawSidebar(PictureCanvas& canvas, const Scene& scene, int x, int top) {
     canvas.text({kPageWidth - kMargin, y}, value, {13.0, palette::kInk, true, Align::kRight});
     y += 22.0;
   };
-  if (result.has_transform) {
-    say("shift", fmt::format("{:.3f} m", result.shift.head<2>().norm()));
-    say("   x, y", fmt::format("{:+.3f}, {:+.3f} m", result.shift.x(), result.shift.y()));
-    say("   up", fmt::format("{:+.3f} m", result.shift.z()));
-    say("heading", fmt::format("{:+.2f}°", result.parts.yaw * 57.29577951308232));
-    say("scale x, y", fmt::format("{:.3f}, {:.3f}", result.parts.scale_x, result.parts.scale_y));
+  if (result.transform.has_value()) {
+    say("shift", fmt::format("{:.3f} m", result.transform->shift.head<2>().norm()));
+    say("   x, y", fmt::format("{:+.3f}, {:+.3f} m", result.transform->shift.x(),
+                               result.transform->shift.y()));
+    say("   up", fmt::format("{:+.3f} m", result.transform->shift.z()));
+    say("heading", fmt::format("{:+.2f}°", result.transform->parts.yaw * 57.29577951308232));
+    say("scale x, y", fmt::format("{:.3f}, {:.3f}", result.transform->parts.scale_x,
+                                  result.transform->parts.scale_y));
     y += 10.0;
   }
-  for (const auto& [name, count] : result.counts) {
+  for (const auto& [name, count] : countsOf(result)) {
     std::string words = name;
     std::replace(words.begin(), words.end(), '_', ' ');
     say(words,
@@ -165,8 +166,9 @@ void writeFlowPicture(const io::OutputPath& path, const Scene& scene) {
     drawMatches(canvas, scene, view);
     drawOutline(canvas, view, scene.outlineUnder(Eigen::Affine2d::Identity()),
                 {2.0, palette::kBefore, {9.0, 6.0}});
-    if (result.has_transform) {
-      drawOutline(canvas, view, scene.outlineUnder(result.pose), {2.0, palette::kAfter, {}});
+    if (result.transform.has_value()) {
+      drawOutline(canvas, view, scene.outlineUnder(result.placed->pose),
+                  {2.0, palette::kAfter, {}});
       drawFlow(canvas, scene, view);
     }
   }

@@ -127,13 +127,15 @@ std::string subtitle(const Scene& scene, bool after) {
   std::string names = fmt::format("{} on {}", scene.info.moving_name, scene.info.fixed_name);
   if (!after) return names;
   return fmt::format("{}; correlation {:.2f}, overlap {:.0f} %", describeMove(scene.registration),
-                     scene.registration.correlation, 100.0 * scene.registration.overlap);
+                     scene.registration.placed->correlation,
+                     100.0 * scene.registration.placed->overlap);
 }
 
 }  // namespace
 
 void writeOverlayPicture(const io::OutputPath& path, const Scene& scene, bool after) {
-  const Eigen::Affine2d pose = after ? scene.registration.pose : Eigen::Affine2d::Identity();
+  const Eigen::Affine2d pose =
+      after ? scene.registration.placed->pose : Eigen::Affine2d::Identity();
   const double aspect = scene.stripUnder(pose).grown(kRim).aspect();
   const bool wide = aspect >= kWideAspect;
   const int strip_height =

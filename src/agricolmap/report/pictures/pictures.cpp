@@ -41,7 +41,7 @@ std::vector<std::string> writePictures(const io::OutputPath& dir,
   const Scene scene(registration, info);
   std::vector<const Kind*> chosen;
   for (const Kind& kind : kKinds) {
-    if (registration.has_transform || !kind.needs_transform) chosen.push_back(&kind);
+    if (registration.transform.has_value() || !kind.needs_transform) chosen.push_back(&kind);
   }
   parallelFor(chosen.size(),
               [&](std::size_t i) { chosen[i]->write(dir / chosen[i]->name, scene); });

@@ -94,9 +94,9 @@ TEST_F(Pictures, RejectionIsABanner) {
 TEST_F(Pictures, WithoutATransformOnlyMapsAndGuess) {
   pipeline::Registration registration = plainRegistration();
   registration.verdict = verdict::rejectBecause("the maps have nothing coherent in common");
-  registration.has_transform = false;
-  registration.association = {};
-  registration.evidence = {};
+  registration.transform.reset();
+  registration.placed.reset();
+  registration.trace = {};
   EXPECT_EQ(writePictures(dir_, registration, kInfo),
             (std::vector<std::string>{"exg_maps.png", "flow.png"}));
   EXPECT_TRUE(Picture(dir_ / "flow.png").ok());
@@ -121,8 +121,8 @@ TEST_F(Pictures, StripsOfAnyShapeAndDirection) {
 
 TEST_F(Pictures, CloudsWithoutColoursShowHeights) {
   pipeline::Registration registration = plainRegistration();
-  registration.fixed_map.exg =
-      Raster<float>(registration.fixed_map.frame.rows, registration.fixed_map.frame.cols);
+  registration.maps.fixed.exg =
+      Raster<float>(registration.maps.fixed.frame.rows, registration.maps.fixed.frame.cols);
   writePictures(dir_, registration, kInfo);
   EXPECT_LT(Picture(dir_ / "overlay_after.png").share(isFringe),
             Picture(dir_ / "overlay_before.png").share(isFringe));

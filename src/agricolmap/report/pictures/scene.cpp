@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "agricolmap/map/blocks.hpp"
 #include "agricolmap/map/vegetation.hpp"
+#include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/draw/outline.hpp"
 
 namespace agricolmap::report {
@@ -31,7 +30,7 @@ bool isConstant(const map::GridMap& map) {
 
 /// Excess Green where both maps have it, else heights.
 PictureValue valueToDraw(const pipeline::Registration& registration) {
-  return isConstant(registration.fixed_map) || isConstant(registration.moving_map)
+  return isConstant(registration.maps.fixed) || isConstant(registration.maps.moving)
              ? PictureValue::kHeight
              : PictureValue::kExg;
 }
@@ -65,14 +64,10 @@ ValueRange rangeOf(const MapLayer& layer, PictureValue value) {
   return range;
 }
 
-/// As EvidenceMeter sees the strip, but for the cell size.
-GroundRect blockStrip(const LayerLevel& level) {
-  map::SignalMap cells;
-  cells.frame = level.frame;
-  cells.weight = Raster<float>(level.frame.rows, level.frame.cols);
-  std::transform(level.cells.begin(), level.cells.end(), cells.weight.begin(),
-                 [](const LayerCell& cell) { return cell.known; });
-  const map::StripFrame strip = map::stripFrame(cells);
+/// The rectangle that the blocks of the evidence were cut along.
+GroundRect blockStrip(const pipeline::Registration& registration) {
+  if (!registration.placed) return {};
+  const map::StripFrame& strip = registration.placed->evidence.strip;
   return {strip.centre, strip.axes, strip.half_extent};
 }
 
@@ -148,13 +143,13 @@ Scene::Scene(const pipeline::Registration& result, const PictureInfo& picture_in
     : registration(result),
       info(picture_info),
       value(valueToDraw(result)),
-      fixed(result.fixed_map, value),
-      moving(result.moving_map, value),
+      fixed(result.maps.fixed, value),
+      moving(result.maps.moving, value),
       fixed_range(rangeOf(fixed, value)),
       moving_range(rangeOf(moving, value)),
       outline(outlineOf(moving.level(kCoarseCell))),
       strip(smallestRectangle(outline)),
-      block_strip(blockStrip(moving.level(kCoarseCell))) {
+      block_strip(blockStrip(result)) {
   const LayerLevel& level = moving.level(kCoarseCell);
   insets = {insetBetween(strip, level, moving_range, -1.0, -0.35),
             insetBetween(strip, level, moving_range, 0.35, 1.0)};
@@ -175,34 +170,22 @@ GroundRect Scene::stripUnder(const Eigen::Affine2d& pose) const {
     box.extend((placed.axes.transpose() * corner).eval());
   }
   placed.centre = placed.axes * box.center();
-  placed.half_extent = (0.5 * box.sizes()).cwiseMax(registration.moving_map.frame.cell);
+  placed.half_extent = (0.5 * box.sizes()).cwiseMax(registration.maps.moving.frame.cell);
   return placed;
 }
 
-const Placement* Scene::winner() const {
-  const Placement* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Placement& placement : registration.association.placements) {
-    if (placement.matches.empty()) continue;
-    double sum = 0.0;
-    for (const Match& match : placement.matches) {
-      sum += (registration.pose * match.moving - match.fixed).norm();
-    }
-    const double mean = sum / static_cast<double>(placement.matches.size());
-    if (mean < least) {
-      least = mean;
-      best = &placement;
-    }
-  }
-  return best;
+const std::vector<Match>& Scene::winningMatches() const {
+  static const std::vector<Match> none;
+  return registration.placed ? winnerOf(registration).matches : none;
 }
 
 std::string describeMove(const pipeline::Registration& registration) {
-  const HorizontalParts& parts = registration.parts;
+  const HorizontalParts& parts = registration.transform->parts;
   return fmt::format(
       "shift {:.2f} m (x {:+.3f}, y {:+.3f}), heading {:+.2f}°, scales x {:.3f}, y {:.3f}",
-      registration.shift.head<2>().norm(), registration.shift.x(), registration.shift.y(),
-      parts.yaw * 180.0 / std::numbers::pi, parts.scale_x, parts.scale_y);
+      registration.transform->shift.head<2>().norm(), registration.transform->shift.x(),
+      registration.transform->shift.y(), parts.yaw * 180.0 / std::numbers::pi, parts.scale_x,
+      parts.scale_y);
 }
 
 }  // namespace agricolmap::report

@@ -45,8 +45,8 @@ class Scene {
   GroundRect stripUnder(const Eigen::Affine2d& pose) const;
   /// The outline as `pose` lays it.
   std::vector<Eigen::Vector2d> outlineUnder(const Eigen::Affine2d& pose) const;
-  /// The placement that the pose was refined from; nullptr if there is none.
-  const Placement* winner() const;
+  /// The matches that the pose was estimated from; empty where a search found it as a whole.
+  const std::vector<Match>& winningMatches() const;
 };
 
 /// Side of the insets [m].

@@ -1,4 +1,4 @@
-#include "agricolmap/pipeline/placing.hpp"
+#include "agricolmap/pipeline/attempts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@ namespace {
 
 constexpr double kRival = 0.8;
 
-PairOutcome outcome(verdict::Status status, double significance, double rival = 0.0) {
-  PairOutcome made;
-  made.has_transform = true;
+Outcome outcome(verdict::Status status, double significance, double rival = 0.0) {
+  Outcome made;
+  made.placed.emplace();
   made.verdict.status = status;
   made.verdict.probability = status == verdict::Status::kAccepted ? 0.9 : 0.4;
-  made.evidence.significance = significance;
+  made.placed->evidence.significance = significance;
   if (rival > 0.0) made.rivals = {{.significance = rival}};
   return made;
 }
@@ -25,7 +25,7 @@ TEST(Supersedes, AnAcceptedOutcomeReplacesARejectedOne) {
 }
 
 TEST(Supersedes, PlacesThatCouldNotBeToldApartAreNotForgotten) {
-  const PairOutcome ambiguous = outcome(verdict::Status::kAmbiguous, 10.0, 9.5);
+  const Outcome ambiguous = outcome(verdict::Status::kAmbiguous, 10.0, 9.5);
   // A later search that merely missed the other place.
   EXPECT_FALSE(supersedes(outcome(verdict::Status::kAccepted, 10.0), ambiguous, kRival));
   EXPECT_FALSE(supersedes(outcome(verdict::Status::kAccepted, 12.0), ambiguous, kRival));
@@ -33,7 +33,7 @@ TEST(Supersedes, PlacesThatCouldNotBeToldApartAreNotForgotten) {
 }
 
 TEST(Supersedes, APlaceThatNoneOfThemRivalsReplacesThem) {
-  const PairOutcome ambiguous = outcome(verdict::Status::kAmbiguous, 8.7, 7.3);
+  const Outcome ambiguous = outcome(verdict::Status::kAmbiguous, 8.7, 7.3);
   EXPECT_TRUE(supersedes(outcome(verdict::Status::kAccepted, 17.4), ambiguous, kRival));
   // The straightened best may be less significant than a rival was.
   EXPECT_FALSE(supersedes(outcome(verdict::Status::kAccepted, 17.4),

@@ -1,0 +1,92 @@
+#include "agricolmap/pipeline/judgement.hpp"
+
+#include <array>
+
+#include "agricolmap/refine/fit.hpp"
+#include "agricolmap/verdict/straighten.hpp"
+
+namespace agricolmap::pipeline {
+namespace {
+
+/// Grid cells a cell at which blocks are moved alone, for the uncertainty.
+constexpr int kBlockFactor = 2;
+/// One block may come to agree by chance.
+constexpr std::size_t kOddBlock = 1;
+
+Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
+               const Eigen::Affine2d& pose, const Refined& refined,
+               const RegistrationOptions& options, Monitor& monitor) {
+  Placed placed;
+  placed.pose = pose;
+  placed.placement = refined.best->start;
+  placed.heights = monitor.run(Stage::kHeights, [&] {
+    return refine::fitVertical(signals.fixed().grid(), signals.moving().grid(), pose,
+                               options.vertical);
+  });
+  monitor.run(Stage::kJudge, [&] {
+    // At the ranking level: finer maps may be sparser than their cells.
+    const refine::SignalPair whole = signals.whole(refine::kRankingFactor);
+    const refine::Fit fit = refine::fitOf(whole.fixed, whole.moving, pose);
+    placed.correlation = fit.correlation;
+    placed.overlap = fit.overlap;
+    const double rival = refined.rivals.empty() ? 0.0 : refined.rivals.front().significance;
+    placed.evidence =
+        verdict::measureEvidence(signals.score(), pose, space, rival, options.evidence);
+    placed.uncertainty = verdict::estimateUncertainty(
+        signals.fixedSignals(pose, kBlockFactor), signals.filled(kBlockFactor), pose,
+        placed.evidence, space, placed.heights.residual, options.uncertainty);
+  });
+  return placed;
+}
+
+/// Blocks place themselves by centimetres at best: what they lay straight must also fit better.
+bool fitsBetter(const Placed& next, const Placed& before) {
+  return next.evidence.agreeing >= before.evidence.agreeing &&
+         next.evidence.significance > before.evidence.significance &&
+         next.correlation > before.correlation;
+}
+
+}  // namespace
+
+Measured measureStraightened(const refine::PairSignals& signals, const SearchSpace& space,
+                             const Refined& refined, const RegistrationOptions& options,
+                             Monitor& monitor) {
+  const auto at = [&](const Eigen::Affine2d& pose) {
+    return measure(signals, space, pose, refined, options, monitor);
+  };
+  Measured measured{at(refined.best->pose), {}};
+  // The paper's own refinement stays as it is.
+  if (options.refine != RefineKind::kDense) return measured;
+  const auto straight = verdict::straightenedPose(measured.placed.evidence, space.scale_axes);
+  if (!straight) return measured;
+  Placed laid = at(*straight);
+  measured.straightened = false;
+  if (laid.evidence.agreeing <= measured.placed.evidence.agreeing + kOddBlock) return measured;
+  const auto take = [&](Placed next) {
+    if (!fitsBetter(next, measured.placed)) return;
+    measured.placed = std::move(next);
+    measured.straightened = true;
+  };
+  take(std::move(laid));
+  // It may not have been bent, but caught at the edge of the refinement's basin.
+  const auto finer = monitor.run(
+      Stage::kRefine, [&] { return refine::refineFrom(signals, *straight, options.dense); });
+  if (finer) take(at(finer->pose));
+  return measured;
+}
+
+verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::RefinedPose>& rivals,
+                             const SearchSpace& space, const RegistrationOptions& options) {
+  if (placed.heights.status != refine::VerticalStatus::kOk) {
+    return verdict::rejectBecause("the heights of the two maps do not fit one another");
+  }
+  verdict::Finding finding{.evidence = placed.evidence,
+                           .uncertainty = placed.uncertainty,
+                           .overlap = placed.overlap,
+                           .pose = placed.pose,
+                           .rivals = {}};
+  for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
+  return verdict::judge(finding, space, options.verdict);
+}
+
+}  // namespace agricolmap::pipeline

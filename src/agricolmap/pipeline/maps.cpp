@@ -1,0 +1,69 @@
+#include "agricolmap/pipeline/maps.hpp"
+
+#include <algorithm>
+
+namespace agricolmap::pipeline {
+namespace {
+
+void levelAndBound(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                   const RegistrationOptions& options, PairMaps& maps) {
+  levelMoving(fixed, moving, guess, options.level, maps.frames);
+  maps.moving_box = boundsOf(moving, maps.frames.levelled_from_moving);
+  maps.space = searchSpace(maps.moving_box, maps.frames, options.prior);
+}
+
+/// Cells that both clouds fill.
+map::GridOptions cellsFor(const Cloud& fixed, const Cloud& moving, const PairFrames& frames,
+                          const RegistrationOptions& options) {
+  double spacing = map::pointSpacing(fixed, frames.levelled_from_fixed);
+  if (!options.prior.scale_unknown) {
+    spacing = std::max(spacing, map::pointSpacing(moving, frames.levelled_from_moving));
+  }
+  return map::coarsened(options.grid, spacing);
+}
+
+void gridFixed(const Cloud& fixed, const RegistrationOptions& options, PairMaps& maps) {
+  // Room for the high-pass.
+  const map::Box2 window =
+      options.prior.scale_unknown
+          ? maps.fixed_box
+          : reachableWindow(maps.moving_box, maps.space, 2.0 * options.signal.high_pass);
+  maps.fixed = map::makeGridMap(fixed, maps.frames.levelled_from_fixed,
+                                window.intersection(maps.fixed_box), maps.grid);
+  maps.fixed.ground_deviation = maps.frames.fixed.roughness;
+}
+
+void gridMoving(const Cloud& moving, PairMaps& maps) {
+  maps.moving =
+      map::makeGridMap(moving, maps.frames.levelled_from_moving, maps.moving_box, maps.grid);
+  maps.moving.ground_deviation = maps.frames.moving.roughness;
+}
+
+}  // namespace
+
+PairMaps mapPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                 const RegistrationOptions& options, Monitor& monitor) {
+  PairMaps maps;
+  monitor.run(Stage::kLevel, [&] {
+    levelFixed(fixed, options.level, maps.frames);
+    maps.fixed_box = boundsOf(fixed, maps.frames.levelled_from_fixed);
+    levelAndBound(fixed, moving, centredGuess(fixed, moving, guess, options.prior), options, maps);
+  });
+  if (!options.prior.scale_unknown) {
+    requirePlausibleExtents(fixed, moving, maps.fixed_box, maps.moving_box);
+  }
+  monitor.run(Stage::kGrid, [&] {
+    maps.grid = cellsFor(fixed, moving, maps.frames, options);
+    gridFixed(fixed, options, maps);
+    if (!options.prior.scale_unknown) gridMoving(moving, maps);
+  });
+  return maps;
+}
+
+void mapMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+               const RegistrationOptions& options, Monitor& monitor, PairMaps& maps) {
+  monitor.run(Stage::kLevel, [&] { levelAndBound(fixed, moving, guess, options, maps); });
+  monitor.run(Stage::kGrid, [&] { gridMoving(moving, maps); });
+}
+
+}  // namespace agricolmap::pipeline

@@ -1,0 +1,40 @@
+#include "agricolmap/pipeline/usable.hpp"
+
+#include <fmt/format.h>
+
+namespace agricolmap::pipeline {
+namespace {
+
+void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options) {
+  if (options.geometry_only) return;
+  for (const Cloud* cloud : {&fixed, &moving}) {
+    if (!cloud->hasColour()) {
+      throw InputError(fmt::format(
+          "{}: has no colours; Excess Green needs them (use --geometry_only to register by height "
+          "alone)",
+          cloud->name));
+    }
+  }
+}
+
+}  // namespace
+
+void requireUsable(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
+                   bool located_otherwise) {
+  requireColours(fixed, moving, options);
+  if ((options.prior.anywhere() || options.prior.scale_unknown) && !located_otherwise &&
+      options.association == AssociationKind::kFlow) {
+    throw UsageError(
+        "the flow needs to know about where to look and at what scale: give --prior-sigma with a "
+        "translation and no --scale-unknown, or use --association correlation");
+  }
+}
+
+InputError fitsAtNoScale(const Cloud& fixed, const Cloud& moving) {
+  return InputError(fmt::format(
+      "{}: at no scale between 0.1 and 10 does it fit into the fixed map {} and still hold more "
+      "than a few plants",
+      moving.name, fixed.name));
+}
+
+}  // namespace agricolmap::pipeline

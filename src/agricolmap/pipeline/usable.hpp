@@ -1,0 +1,18 @@
+// What cannot be registered, said before any work is done.
+#pragma once
+
+#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/pipeline/options.hpp"
+
+namespace agricolmap::pipeline {
+
+/// Throws InputError for clouds that lack what the options compare, UsageError for a search that
+/// cannot be as wide as the guess leaves it. `located_otherwise`: not by the options' search.
+void requireUsable(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
+                   bool located_otherwise);
+
+/// Why a moving file of unknown scale was not even looked for.
+InputError fitsAtNoScale(const Cloud& fixed, const Cloud& moving);
+
+}  // namespace agricolmap::pipeline

@@ -1,0 +1,90 @@
+#include "agricolmap/refine/multi_start.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/refine/basins.hpp"
+
+namespace agricolmap::refine {
+namespace {
+
+/// Grid cells a cell, for the best placement alone: 6 cm again, 4 and 2 cm, with what plants hide
+/// filled in.
+constexpr std::array<int, 3> kFineFactors = {3, 2, 1};
+/// The finest level whose result is compared with what lies beside it: neighbouring basins of finer
+/// ones are nearer than plants are.
+constexpr int kBasinFactor = 2;
+/// Finer cells must have at least this share of the coarser ones' overlap.
+constexpr double kLeastFinerOverlap = 0.5;
+
+/// One level for all poses; those that do not hold are left out.
+std::vector<RefinedPose> refineLevel(const SignalPair& level, const std::vector<RefinedPose>& poses,
+                                     const DenseRefineOptions& options) {
+  std::vector<Eigen::Affine2d> starts;
+  starts.reserve(poses.size());
+  for (const RefinedPose& pose : poses) starts.push_back(pose.pose);
+  const std::vector<DenseRefineResult> refined =
+      refineEach(level.fixed, level.moving, starts, options);
+  std::vector<RefinedPose> held;
+  for (std::size_t i = 0; i < refined.size(); ++i) {
+    if (refined[i].status != RefineStatus::kConverged) continue;
+    held.push_back(
+        {refined[i].fixed_from_moving, poses[i].significance, refined[i].overlap, poses[i].start});
+  }
+  return held;
+}
+
+}  // namespace
+
+RankedPoses refineStarts(const PairSignals& signals, std::span<const Eigen::Affine2d> starts,
+                         double exclusion, const DenseRefineOptions& options) {
+  std::vector<RefinedPose> poses;
+  for (std::size_t i = 0; i < starts.size(); ++i) poses.push_back({starts[i], 0.0, 0.0, i});
+  for (const int factor : {kCoarseFactor, kRankingFactor}) {
+    poses = refineLevel(signals.whole(factor), poses, options);
+  }
+  const correlation::StripScore& score = signals.score();
+  parallelFor(poses.size(),
+              [&](std::size_t i) { poses[i].significance = score.significance(poses[i].pose); });
+  std::stable_sort(poses.begin(), poses.end(), [](const RefinedPose& a, const RefinedPose& b) {
+    return a.significance > b.significance;
+  });
+  RankedPoses ranked;
+  ranked.held = poses.size();
+  for (const RefinedPose& pose : poses) {
+    const bool is_new =
+        std::none_of(ranked.distinct.begin(), ranked.distinct.end(), [&](const RefinedPose& other) {
+          return score.distance(pose.pose, other.pose) <= exclusion;
+        });
+    if (is_new) ranked.distinct.push_back(pose);
+  }
+  return ranked;
+}
+
+RefinedPose refineFinely(const PairSignals& signals, const RefinedPose& start,
+                         const DenseRefineOptions& options) {
+  RefinedPose best = start;
+  for (const int factor : kFineFactors) {
+    const map::SignalMap fixed = signals.fixedSignals(best.pose, factor);
+    const auto refine = factor >= kBasinFactor ? refineAcrossBasins : refineDense;
+    const DenseRefineResult finer = refine(fixed, signals.filled(factor), best.pose, options);
+    if (finer.status != RefineStatus::kConverged ||
+        finer.overlap < kLeastFinerOverlap * best.overlap) {
+      break;
+    }
+    best.pose = finer.fixed_from_moving;
+    best.overlap = finer.overlap;
+  }
+  return best;
+}
+
+std::optional<RefinedPose> refineFrom(const PairSignals& signals, const Eigen::Affine2d& pose,
+                                      const DenseRefineOptions& options) {
+  const std::vector<RefinedPose> ranked =
+      refineLevel(signals.whole(kRankingFactor), {{pose}}, options);
+  if (ranked.empty()) return std::nullopt;
+  return refineFinely(signals, ranked.front(), options);
+}
+
+}  // namespace agricolmap::refine
