@@ -159,17 +159,8 @@ Setup affordableSetup(const correlation::MapSignals& fixed, const correlation::M
   return setup;
 }
 
-Placement placementOf(const Candidate& candidate, const map::StripFrame& strip,
-                      const SearchSpace& space) {
-  Placement placement{.pose = poseOf(candidate, space), .score = candidate.score, .matches = {}};
-  for (const double u : {-1.0, 0.0, 1.0}) {
-    for (const double v : {-1.0, 0.0, 1.0}) {
-      const Eigen::Vector2d point =
-          strip.world({u * strip.half_extent.x(), v * strip.half_extent.y()});
-      placement.matches.push_back({point, placement.pose * point});
-    }
-  }
-  return placement;
+Placement placementOf(const Candidate& candidate, const SearchSpace& space) {
+  return {.pose = poseOf(candidate, space), .score = candidate.score, .matches = {}};
 }
 
 /// What a search that was not accepted is followed by, an ambiguous one, too: among places that fit
@@ -212,7 +203,7 @@ SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
                             space);
   SearchResult result;
   for (const Candidate& candidate : kept) {
-    result.placements.push_back(placementOf(candidate, setup.strip, space));
+    result.placements.push_back(placementOf(candidate, space));
   }
   result.report = {.hypotheses = plan.fine,
                    .correlations = plan.coarse.size() * setup.blocks.size(),

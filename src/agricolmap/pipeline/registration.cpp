@@ -112,7 +112,7 @@ std::pair<Outcome, double> placeAtAnyScale(const Cloud& fixed, const Cloud& movi
   if (!best->outcome.placed) return {std::move(best->outcome), 1.0};
   const double scale = scaleOf(*best, maps.space.scale_axes);
   mapAt(scale);
-  ScaleTrial found = carriedOver(*std::move(best), maps.frames, maps.moving_box);
+  ScaleTrial found = carriedOver(*std::move(best), maps.frames);
   const correlation::MapSignals moving_signals(maps.moving, options.signal);
   const refine::PairSignals signals = signalsOf(fixed_signals, moving_signals, options, monitor);
   return {settle(maps, signals, std::move(found.outcome.trace.located),

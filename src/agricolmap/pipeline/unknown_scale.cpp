@@ -52,7 +52,7 @@ double scaleOf(const ScaleTrial& trial, const Eigen::Matrix2d& scale_axes) {
   return trial.factor * std::sqrt(parts.scale_x * parts.scale_y);
 }
 
-ScaleTrial carriedOver(ScaleTrial trial, const PairFrames& frames, const map::Box2& box) {
+ScaleTrial carriedOver(ScaleTrial trial, const PairFrames& frames) {
   // Levelled moving of now → levelled moving of then, in the plane.
   const Eigen::Affine3d then_from_now =
       trial.frames.levelled_from_moving * frames.levelled_from_moving.inverse();
@@ -60,15 +60,8 @@ ScaleTrial carriedOver(ScaleTrial trial, const PairFrames& frames, const map::Bo
   plane.linear() = then_from_now.linear().topLeftCorner<2, 2>();
   plane.translation() = then_from_now.translation().head<2>();
   const Placed& placed = *trial.outcome.placed;
-  Placement placement{
-      .pose = placed.pose * plane, .score = placed.evidence.significance, .matches = {}};
-  for (const double u : {0.0, 0.5, 1.0}) {
-    for (const double v : {0.0, 0.5, 1.0}) {
-      const Eigen::Vector2d point = box.min() + box.sizes().cwiseProduct(Eigen::Vector2d(u, v));
-      placement.matches.push_back({point, placement.pose * point});
-    }
-  }
-  trial.outcome.trace.located.placements = {placement};
+  trial.outcome.trace.located.placements = {
+      {.pose = placed.pose * plane, .score = placed.evidence.significance, .matches = {}}};
   for (refine::RefinedPose& rival : trial.outcome.rivals) rival.pose = rival.pose * plane;
   trial.frames = frames;
   return trial;

@@ -34,6 +34,6 @@ double scaleOf(const ScaleTrial& trial, const Eigen::Matrix2d& scale_axes);
 /// Moves what a trial found from the trial's levelled frame of the moving map into that of
 /// `frames`, after the moving cloud was levelled anew: its place as the only placement, and its
 /// rivals.
-ScaleTrial carriedOver(ScaleTrial trial, const PairFrames& frames, const map::Box2& box);
+ScaleTrial carriedOver(ScaleTrial trial, const PairFrames& frames);
 
 }  // namespace agricolmap::pipeline
