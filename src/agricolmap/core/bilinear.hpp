@@ -48,7 +48,10 @@ std::optional<CellsAround<Real>> cellsWithin(int rows, int cols, Place col, Plac
         row < static_cast<Place>(rows - 1))) {
     return std::nullopt;
   }
-  return cellsAround<Real>(col, row);
+  // As cellsAround: nothing is negative here, and to cut off costs less than to round down.
+  const int left = static_cast<int>(col), low = static_cast<int>(row);
+  return CellsAround<Real>{low, left, static_cast<Real>(col - static_cast<Place>(left)),
+                           static_cast<Real>(row - static_cast<Place>(low))};
 }
 
 /// Beyond the outer centres it is read as at the nearest place between them.
