@@ -3,8 +3,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <optional>
-#include <vector>
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/map/signal_map.hpp"
@@ -27,7 +25,6 @@ enum class RefineStatus { kConverged, kNoOverlap, kDiverged };
 struct DenseRefineResult {
   RefineStatus status = RefineStatus::kNoOverlap;
   Eigen::Affine2d fixed_from_moving = Eigen::Affine2d::Identity();  ///< meaningful if converged
-  int iterations = 0;
   double overlap = 0.0;      ///< share of the moving map's seen cells that the fixed map sees
   double correlation = 0.0;  ///< robustly weighted, over both channels
 };
