@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
@@ -93,7 +93,7 @@ TEST(RealField, FindsAStripOfRealSoybeans) {
   // The guess lays the strip's frame at its middle; it is wrong by 1 m, 3 degrees and 10 percent.
   const Eigen::Affine3d guess(Eigen::Translation3d(middle.x(), middle.y(), middle.z()));
   Eigen::Affine3d error = Eigen::Affine3d::Identity();
-  error.linear() = Eigen::AngleAxisd(3.0 * std::numbers::pi / 180.0, Eigen::Vector3d::UnitZ()) *
+  error.linear() = Eigen::AngleAxisd(radians(3.0), Eigen::Vector3d::UnitZ()) *
                    Eigen::Vector3d(1.1, 0.9, 1.0).asDiagonal().toDenseMatrix();
   error.translation() = Eigen::Vector3d(0.8, -0.6, 0.2);
   const Eigen::Vector3d strip_middle = guess * error.translation();

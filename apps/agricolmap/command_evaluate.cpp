@@ -3,9 +3,9 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "agricolmap/core/affine_fit.hpp"
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
@@ -74,7 +74,7 @@ ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals)
   fmt::print("to the best affine {:.4f} m horizontal\n", errors.rms_to_best_affine);
   fmt::print("largest            {:.4f} m\n", errors.worst);
   fmt::print("e_t, e_r, e_s      {:.4f} m, {:.3f} deg, {:.2f} %\n", errors.translation,
-             errors.rotation * 180.0 / std::numbers::pi, 100.0 * errors.scale);
+             degrees(errors.rotation), 100.0 * errors.scale);
   fmt::print("within limits      {} (RMS and e_t 0.05 m, e_r 0.1 rad, e_s 2.5 %)\n",
              errors.within({}) ? "yes" : "no");
   return ExitCode::kOk;

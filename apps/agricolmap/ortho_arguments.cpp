@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "agricolmap/config/text.hpp"
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/simulate/ortho/row_heading.hpp"
 
@@ -16,7 +16,6 @@ namespace agricolmap {
 namespace {
 
 constexpr const char* kGroup = "Instead of a simulated crop: a real orthomosaic";
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The plants are the mosaic's.
 constexpr const char* kLayout[] = {
@@ -97,10 +96,10 @@ simulate::SimulatedPair OrthoArguments::simulate(simulate::SimulationOptions& op
     options.field.random_row_heading = false;
     // To hundredths, as it is reported, so that the report makes the same pair.
     options.field.row_heading_deg =
-        std::round(100.0 * simulate::findRowHeading(field) / kDegree) / 100.0 + 0.0;
+        std::round(100.0 * degrees(simulate::findRowHeading(field))) / 100.0 + 0.0;
     spdlog::info("{}: the rows run at {:.2f} degrees", ortho_, options.field.row_heading_deg);
   }
-  field.row_heading = options.field.row_heading_deg * kDegree;
+  field.row_heading = radians(options.field.row_heading_deg);
   if (options.uav.gsd < field.gsd) {
     spdlog::info("uav.gsd is {:.5g} m instead of {:.5g} m: the mosaic is no finer", field.gsd,
                  options.uav.gsd);

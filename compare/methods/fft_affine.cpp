@@ -130,7 +130,7 @@ class FftAffine : public Method {
     const Eigen::Vector2d& centre = maps.space.centre;
     for (const locate::Hypothesis& one : all) {
       const PlainCorrelation::Piece piece =
-          blankPiece(moving.frame, centre, locate::linearOf(one, maps.space.scale_axes));
+          blankPiece(moving.frame, centre, one.linear(maps.space.scale_axes));
       most_rows = std::max(most_rows, piece.value.rows());
       most_cols = std::max(most_cols, piece.value.cols());
     }
@@ -138,7 +138,7 @@ class FftAffine : public Method {
     std::vector<Candidate> found(all.size());
     parallelFor(all.size(), [&](std::size_t i) {
       Candidate& candidate = found[i];
-      candidate.pose.linear() = locate::linearOf(all[i], maps.space.scale_axes);
+      candidate.pose.linear() = all[i].linear(maps.space.scale_axes);
       const PlainCorrelation::Peak peak =
           correlation.best(pieceOf(moving, centre, candidate.pose.linear()), centre,
                            maps.space.uncertainty.translation + moving.frame.cell);
@@ -159,7 +159,7 @@ class FftAffine : public Method {
     for (const double yaw : stepsOver(heading, shift / half.norm())) {
       for (const double x : stepsOver(scale, shift / half.x())) {
         for (const double y : stepsOver(scale, shift / half.y())) {
-          all.push_back({yaw, std::exp(x), std::exp(y)});
+          all.push_back(locate::Hypothesis::fromVector({yaw, x, y}));
         }
       }
     }

@@ -8,8 +8,6 @@ namespace agricolmap::compare {
 PlainCorrelation::PlainCorrelation(const map::SignalMap& fixed, int most_rows, int most_cols,
                                    double least_energy)
     : frame_(fixed.frame),
-      most_rows_(most_rows),
-      most_cols_(most_cols),
       fft_(correlation::Fft2::goodSize(fixed.frame.rows + most_rows),
            correlation::Fft2::goodSize(fixed.frame.cols + most_cols)) {
   const Raster<float>& value = fixed.channel[0];

@@ -29,16 +29,12 @@ class PlainCorrelation {
   };
   /// The best shift with the anchor within `reach` [m] of `centre`.
   Peak best(const Piece& piece, const Eigen::Vector2d& centre, double reach) const;
-  int mostRows() const { return most_rows_; }
-  int mostCols() const { return most_cols_; }
 
  private:
   correlation::ComplexRaster spectrumOf(const Raster<float>& values, int first_row,
                                         int first_col) const;
 
   GridFrame frame_;
-  int most_rows_;
-  int most_cols_;
   correlation::Fft2 fft_;
   correlation::ComplexRaster fixed_;    ///< spectrum of the signal
   correlation::ComplexRaster squared_;  ///< and of its square

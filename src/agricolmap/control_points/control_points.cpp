@@ -10,9 +10,9 @@
 
 #include "agricolmap/control_points/control_points_fit.hpp"
 #include "agricolmap/control_points/control_points_robust.hpp"
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/core/transform.hpp"
 
 namespace agricolmap::control_points {
 namespace {

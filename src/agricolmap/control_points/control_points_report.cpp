@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/text/number_file.hpp"
 
 namespace agricolmap::control_points {
@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr std::size_t kLongestName = 24;
 
 /// Null stands for numbers that JSON lacks.
@@ -26,9 +25,9 @@ Json axes(const Eigen::Vector3d& v) { return {number(v.x()), number(v.y()), numb
 Json axesOrNull(const Eigen::Vector3d& v) { return v.allFinite() ? axes(v) : Json(nullptr); }
 
 Json rotationJson(const Eigen::Vector3d& angles) {
-  return {{"roll_deg", number(angles.x() * kDegPerRad)},
-          {"pitch_deg", number(angles.y() * kDegPerRad)},
-          {"yaw_deg", number(angles.z() * kDegPerRad)}};
+  return {{"roll_deg", number(degrees(angles.x()))},
+          {"pitch_deg", number(degrees(angles.y()))},
+          {"yaw_deg", number(degrees(angles.z()))}};
 }
 
 Json partsJson(const ControlParts& parts) {
@@ -86,8 +85,8 @@ std::string heading(const ControlEstimate& estimate) {
                     off.scale.z(), parts.shear.x(), parts.shear.y(), parts.shear.z());
   }
   return text + fmt::format("\nrotation roll {:.4f} pitch {:.4f} yaw {:.4f} ± {:.4f} deg\n",
-                            parts.angles.x() * kDegPerRad, parts.angles.y() * kDegPerRad,
-                            parts.angles.z() * kDegPerRad, off.angles.z() * kDegPerRad);
+                            degrees(parts.angles.x()), degrees(parts.angles.y()),
+                            degrees(parts.angles.z()), degrees(off.angles.z()));
 }
 
 }  // namespace

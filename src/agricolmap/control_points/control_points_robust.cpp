@@ -6,6 +6,7 @@
 
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::control_points {
 namespace {
@@ -14,9 +15,6 @@ namespace {
 constexpr std::size_t kStarts = 3000;
 constexpr int kReweights = 100;
 constexpr double kStill = 1e-9;  ///< a change of the residuals that ends the reweighting [m]
-/// Medians of the distance from 0 of a normal in the plane and on a line, in deviations.
-constexpr double kMedianPlane = 1.1774;
-constexpr double kMedianLine = 0.6745;
 
 /// Number of ways to choose k of n, or `most` when there are more.
 std::size_t choices(std::size_t n, std::size_t k, std::size_t most) {
@@ -87,9 +85,7 @@ Eigen::Affine3d ControlFit::inFileCoordinates(const Eigen::Affine3d& local) cons
 double ControlFit::quantile(std::vector<double> values) const {
   const std::size_t minimal = minimalPairs(options_.model);
   const std::size_t rank = std::max(size() / 2 + (minimal + 2) / 2, minimal + 2);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::min(size(), rank) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return valueAtRank(values, std::min(size(), rank) - 1);
 }
 
 PickSigmas ControlFit::sigmas(const Eigen::Affine3d& local) const {
@@ -104,8 +100,8 @@ PickSigmas ControlFit::sigmas(const Eigen::Affine3d& local) const {
   const double taken_plane = scales ? 2.5 : 4.0;  // parameters per coordinate
   const double taken_line = scales ? 3.0 : 4.0;
   const double plane = std::max(
-      kLeastPickSigma, quantile(horizontal) / kMedianPlane * std::sqrt(n / (n - taken_plane)));
-  const double line = quantile(vertical) / kMedianLine * std::sqrt(n / (n - taken_line));
+      kLeastPickSigma, quantile(horizontal) / kMedianInPlane * std::sqrt(n / (n - taken_plane)));
+  const double line = quantile(vertical) / kMedianOnLine * std::sqrt(n / (n - taken_line));
   // Nobody picks heights better than places, and half as many numbers tell less of them.
   return {plane, std::max(plane, line)};
 }
@@ -164,8 +160,7 @@ std::optional<Eigen::Affine3d> ControlFit::reweighted(const Eigen::Affine3d& sta
   std::vector<Eigen::Vector3d> before = residuals(local);
   for (int k = 0; k < kReweights; ++k) {
     for (std::size_t i = 0; i < size(); ++i) {
-      const double u = sigmas.distance(before[i]) / options_.tukey;
-      weights[i] = u < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
+      weights[i] = tukeyWeight(sigmas.distance(before[i]) / options_.tukey);
     }
     const auto next = fit(weights);
     if (!next) return std::nullopt;

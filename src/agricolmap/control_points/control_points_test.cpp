@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "agricolmap/control_points/control_points_report.hpp"
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/test_support.hpp"
@@ -14,7 +14,6 @@
 namespace agricolmap::control_points {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 const Eigen::Vector3d kMovingOrigin(5012.0, -380.0, 7.0);
 const Eigen::Vector3d kFixedOrigin(432017.25, 5255321.75, 412.5);
 
@@ -22,8 +21,8 @@ const Eigen::Vector3d kFixedOrigin(432017.25, 5255321.75, 412.5);
 Eigen::Affine3d trueScales(double yaw_deg, double tilt_deg) {
   Eigen::Affine3d fixed_from_moving = Eigen::Affine3d::Identity();
   fixed_from_moving.linear() =
-      (Eigen::AngleAxisd(yaw_deg * kDegree, Eigen::Vector3d::UnitZ()) *
-       Eigen::AngleAxisd(tilt_deg * kDegree, Eigen::Vector3d(0.6, 0.8, 0.0)))
+      (Eigen::AngleAxisd(radians(yaw_deg), Eigen::Vector3d::UnitZ()) *
+       Eigen::AngleAxisd(radians(tilt_deg), Eigen::Vector3d(0.6, 0.8, 0.0)))
           .toRotationMatrix() *
       Eigen::Vector3d(1.21, 0.83, 1.0).asDiagonal();
   fixed_from_moving.translation() = kFixedOrigin - fixed_from_moving.linear() * kMovingOrigin;
@@ -87,7 +86,7 @@ TEST(ControlPoints, ExactPairsGiveTheExactTransformation) {
 
 TEST(ControlPoints, AnglesAreThoseOfOffsetFiles) {
   const ControlEstimate result = estimate(picked(trueScales(30.0, 0.0), 8, 0.0, 1));
-  EXPECT_NEAR(result.parts.angles.z(), 30.0 * kDegree, 1e-8);
+  EXPECT_NEAR(result.parts.angles.z(), radians(30.0), 1e-8);
   EXPECT_NEAR(result.parts.angles.x(), 0.0, 1e-7);
   EXPECT_NEAR(result.parts.angles.y(), 0.0, 1e-7);
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -69,9 +70,16 @@ TEST(Transform, HorizontalPartsRoundTrip) {
   }
 }
 
-TEST(Transform, WrapsAngles) {
+TEST(Angles, AreWrapped) {
   EXPECT_NEAR(wrapAngle(3.0 * std::numbers::pi), std::numbers::pi, 1e-12);
+  EXPECT_NEAR(wrapAngle(-std::numbers::pi), std::numbers::pi, 1e-12);
   EXPECT_NEAR(wrapAngle(-0.1), -0.1, 1e-12);
+}
+
+TEST(Angles, ChangeUnits) {
+  EXPECT_DOUBLE_EQ(radians(180.0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(degrees(-0.5 * std::numbers::pi), -90.0);
+  EXPECT_DOUBLE_EQ(degrees(radians(11.5)), 11.5);
 }
 
 TEST(Parallel, SumIsTheSameOnAnyNumberOfThreads) {
@@ -112,6 +120,7 @@ TEST(Parallel, StopsWhenItsScopeIsStoppedAndNoOther) {
 TEST(Random, IsTheSameEverywhere) {
   Random random(42);
   EXPECT_EQ(random.bits(), 13679457532755275413ULL);
+  EXPECT_EQ(mixBits(42 + Random::kStep), 13679457532755275413ULL);
   double sum = 0.0;
   for (int i = 0; i < 10000; ++i) sum += random.normal();
   EXPECT_NEAR(sum / 10000, 0.0, 0.05);

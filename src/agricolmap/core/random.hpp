@@ -8,6 +8,13 @@
 
 namespace agricolmap {
 
+/// Spreads what tells two numbers apart over all 64 bits (the finaliser of SplitMix64).
+constexpr std::uint64_t mixBits(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return z ^ (z >> 31);
+}
+
 /// SplitMix64 (Steele et al. 2014): tiny state, good enough for simulation and sampling.
 class Random {
  public:
@@ -17,12 +24,9 @@ class Random {
     Random mixer(seed ^ (0xD1B54A32D192ED03ULL * (i + 1)));
     return Random(mixer.bits());
   }
-  std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ULL);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31);
-  }
+  /// From one state to the next: 2⁶⁴ over the golden ratio.
+  static constexpr std::uint64_t kStep = 0x9E3779B97F4A7C15ULL;
+  std::uint64_t bits() { return mixBits(state_ += kStep); }
   /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }

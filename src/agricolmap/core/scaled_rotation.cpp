@@ -4,13 +4,44 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap {
 
+Eigen::Matrix2d YawScales::linear(const Eigen::Matrix2d& axes) const {
+  return rotation2(yaw) * axes * scale.asDiagonal() * axes.transpose();
+}
+
+Eigen::Vector3d YawScales::vector() const {
+  return {yaw, std::log(scale.x()), std::log(scale.y())};
+}
+
+YawScales YawScales::fromVector(const Eigen::Vector3d& vector) {
+  return {vector[0], {std::exp(vector[1]), std::exp(vector[2])}};
+}
+
 Eigen::Matrix2d orthonormalAxes(const Eigen::Matrix2d& axes) {
   const Eigen::JacobiSVD<Eigen::Matrix2d> svd(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return svd.matrixU() * svd.matrixV().transpose();
+}
+
+std::optional<YawScales> fitYawScales(const Eigen::Matrix2d& products,
+                                      const Eigen::Matrix2d& spread, const Eigen::Matrix2d& axes) {
+  const double handed = axes.determinant() < 0.0 ? -1.0 : 1.0;
+  const Eigen::Vector2d a1 = products.col(0);
+  // e₂ = handed·J·e₁ with J a quarter turn, so e₂·a₂ = e₁·(handed·Jᵀ·a₂).
+  const Eigen::Vector2d a2 = handed * Eigen::Vector2d(products(1, 1), -products(0, 1));
+  const Eigen::Matrix2d form =
+      a1 * a1.transpose() / spread(0, 0) + a2 * a2.transpose() / spread(1, 1);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(form);
+  Eigen::Vector2d e1 = solver.eigenvectors().col(1);
+  if (e1.dot(a1) < 0.0) e1 = -e1;
+  YawScales fit;
+  fit.scale = {e1.dot(a1) / spread(0, 0), e1.dot(a2) / spread(1, 1)};
+  if (!(fit.scale.minCoeff() > 0.0)) return std::nullopt;
+  fit.yaw = wrapAngle(std::atan2(e1.y(), e1.x()) - std::atan2(axes(1, 0), axes(0, 0)));
+  return fit;
 }
 
 std::optional<ScaledRotation> fitScaledRotation(std::span<const Match> matches,
@@ -46,21 +77,10 @@ std::optional<ScaledRotation> fitScaledRotation(std::span<const Match> matches,
   // Points on one spot or one line leave a scale or the rotation open.
   const double trace = spread.trace();
   if (!(trace > 0.0) || spread.determinant() < 1e-10 * trace * trace) return std::nullopt;
-  const double handed = a.determinant() < 0.0 ? -1.0 : 1.0;
-  const Eigen::Vector2d a1 = products.col(0);
-  // e₂ = handed·J·e₁ with J a quarter turn, so e₂·a₂ = e₁·(handed·Jᵀ·a₂).
-  const Eigen::Vector2d a2 = handed * Eigen::Vector2d(products(1, 1), -products(0, 1));
-  const Eigen::Matrix2d form =
-      a1 * a1.transpose() / spread(0, 0) + a2 * a2.transpose() / spread(1, 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(form);
-  Eigen::Vector2d e1 = solver.eigenvectors().col(1);
-  if (e1.dot(a1) < 0.0) e1 = -e1;
-  ScaledRotation fit;
-  fit.scale = {e1.dot(a1) / spread(0, 0), e1.dot(a2) / spread(1, 1)};
-  if (!(fit.scale.minCoeff() > 0.0)) return std::nullopt;
-  const Eigen::Vector2d axis = a.col(0);
-  fit.yaw = wrapAngle(std::atan2(e1.y(), e1.x()) - std::atan2(axis.y(), axis.x()));
-  fit.fixed_from_moving.linear() = rotation2(fit.yaw) * a * fit.scale.asDiagonal() * a.transpose();
+  const std::optional<YawScales> best = fitYawScales(products, spread, a);
+  if (!best) return std::nullopt;
+  ScaledRotation fit{*best};
+  fit.fixed_from_moving.linear() = fit.linear(a);
   fit.fixed_from_moving.translation() = mean_p - fit.fixed_from_moving.linear() * mean_q;
   return fit;
 }

@@ -2,7 +2,6 @@
 
 #include <Eigen/SVD>
 #include <cmath>
-#include <numbers>
 
 namespace agricolmap {
 
@@ -23,11 +22,6 @@ Eigen::Matrix2d composeHorizontal(const HorizontalParts& parts) {
 }
 
 Eigen::Matrix2d rotation2(double yaw) { return Eigen::Rotation2Dd(yaw).toRotationMatrix(); }
-
-double wrapAngle(double angle) {
-  const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
-  return wrapped <= -std::numbers::pi ? wrapped + 2.0 * std::numbers::pi : wrapped;
-}
 
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& linear) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -21,9 +21,6 @@ Eigen::Matrix2d composeHorizontal(const HorizontalParts& parts);
 /// A rotation about z [rad].
 Eigen::Matrix2d rotation2(double yaw);
 
-/// Angle in (−π, π].
-double wrapAngle(double angle);
-
 /// Nearest rotation to a linear map (polar decomposition), for the paper's rotation error.
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& linear);
 

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "agricolmap/core/transform.hpp"
+#include "agricolmap/core/angles.hpp"
 
 namespace agricolmap::locate {
 namespace {
@@ -86,13 +85,6 @@ class Lattice {
 
 }  // namespace
 
-Eigen::Vector3d Hypothesis::vector() const { return {yaw, std::log(scale_x), std::log(scale_y)}; }
-
-Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& scale_axes) {
-  const Eigen::Vector2d scales(hypothesis.scale_x, hypothesis.scale_y);
-  return rotation2(hypothesis.yaw) * scale_axes * scales.asDiagonal() * scale_axes.transpose();
-}
-
 Eigen::Matrix3d displacementMetric(const Eigen::Matrix2d& axes, const Eigen::Vector2d& half_extent,
                                    const Eigen::Matrix2d& scale_axes) {
   // Displacement of p: yaw·Jp + a·e₁e₁ᵀp + b·e₂e₂ᵀp; the mean of ppᵀ over the rectangle is known.
@@ -114,11 +106,10 @@ Eigen::Matrix3d displacementMetric(const Eigen::Matrix2d& axes, const Eigen::Vec
 std::vector<Hypothesis> coverSpace(const PriorUncertainty& uncertainty,
                                    const Eigen::Matrix3d& metric, double radius) {
   const double scale_limit = logScaleLimit(uncertainty);
-  const Eigen::Vector3d limits(uncertainty.heading_deg * std::numbers::pi / 180.0, scale_limit,
-                               scale_limit);
+  const Eigen::Vector3d limits(radians(uncertainty.heading_deg), scale_limit, scale_limit);
   std::vector<Hypothesis> hypotheses;
   for (const Eigen::Vector3d& p : Lattice(limits, metric, radius).points()) {
-    hypotheses.push_back({p[0], std::exp(p[1]), std::exp(p[2])});
+    hypotheses.push_back(Hypothesis::fromVector(p));
   }
   return hypotheses;
 }

@@ -6,22 +6,19 @@
 #include <map>
 #include <vector>
 
+#include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/map/blocks.hpp"
 
 namespace agricolmap::locate {
 
 /// A heading error and two scale factors, relative to the initial guess.
-struct Hypothesis {
-  double yaw = 0.0;  ///< [rad]
-  double scale_x = 1.0;
-  double scale_y = 1.0;
-  /// (yaw, log scale_x, log scale_y): differences of these move points linearly.
-  Eigen::Vector3d vector() const;
-};
+using Hypothesis = YawScales;
 
 /// Linear map R(yaw) · A · diag(s_x, s_y) · Aᵀ with A the directions of the scales.
-Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& scale_axes);
+inline Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& scale_axes) {
+  return hypothesis.linear(scale_axes);
+}
 
 /// Mean squared displacement of the points of a rectangle about its middle, as a quadratic form in
 /// a small change of (yaw, log s_x, log s_y) [m²]. `axes`, `half_extent`: of the rectangle.

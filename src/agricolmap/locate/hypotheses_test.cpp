@@ -15,7 +15,7 @@ const Eigen::Vector2d kStrip(5.0, 1.1);
 TEST(Hypotheses, MetricIsTheMeanSquaredDisplacement) {
   const Eigen::Matrix2d axes = rotation2(0.4), scales = rotation2(-0.3);
   const Hypothesis small{0.002, 1.003, 0.999};
-  const Eigen::Matrix2d change = linearOf(small, scales) - Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d change = small.linear(scales) - Eigen::Matrix2d::Identity();
   Random random(1);
   double sum = 0.0;
   constexpr int kCount = 20000;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "agricolmap/core/bilinear.hpp"
+
 namespace agricolmap::locate {
 namespace {
 
@@ -39,23 +41,19 @@ double Polisher::score(const Candidate& candidate) const {
   const Raster<float>& high = filter_.whitenedHeight();
   const double cell = filter_.frame().cell;
   const Eigen::Matrix2f linear =
-      (linearOf(candidate.hypothesis, space_.scale_axes) / cell).cast<float>();
+      (candidate.hypothesis.linear(space_.scale_axes) / cell).cast<float>();
   const Eigen::Vector2f origin =
       filter_.frame().cellOf(space_.centre + candidate.shift).cast<float>();
-  const auto last_col = static_cast<float>(green.cols() - 1);
-  const auto last_row = static_cast<float>(green.rows() - 1);
   const auto stride = static_cast<std::size_t>(green.cols());
   double sum = 0.0;
   double inside = 0.0;
   for (const Cell& c : cells_) {
     const float x = origin.x() + linear(0, 0) * c.offset.x() + linear(0, 1) * c.offset.y();
     const float y = origin.y() + linear(1, 0) * c.offset.x() + linear(1, 1) * c.offset.y();
-    if (!(x >= 0.0F && y >= 0.0F && x < last_col && y < last_row)) continue;
-    const auto col = static_cast<std::size_t>(x);
-    const auto row = static_cast<std::size_t>(y);
-    const float u = x - static_cast<float>(col), v = y - static_cast<float>(row);
-    const std::size_t i = row * stride + col;
-    const float a = (1 - u) * (1 - v), b = u * (1 - v), d = (1 - u) * v, e = u * v;
+    const auto cells = cellsWithin<float>(green.rows(), green.cols(), x, y);
+    if (!cells) continue;
+    const std::size_t i = green.index(cells->row, cells->col);
+    const auto [a, b, d, e] = cells->shares();
     const float g =
         a * green[i] + b * green[i + 1] + d * green[i + stride] + e * green[i + stride + 1];
     const float h = a * high[i] + b * high[i + 1] + d * high[i + stride] + e * high[i + stride + 1];
@@ -75,7 +73,7 @@ Candidate Polisher::improve(Candidate best) const {
     if (direction < 3) {
       const Eigen::Vector3d p =
           best.hypothesis.vector() + length * cell * directions_.col(direction);
-      next.hypothesis = {p[0], std::exp(p[1]), std::exp(p[2])};
+      next.hypothesis = Hypothesis::fromVector(p);
     } else {
       next.shift[direction - 3] += length * cell;
     }

@@ -145,7 +145,7 @@ std::vector<Hypothesis> alongWaves(const std::vector<Hypothesis>& hypotheses,
   std::vector<Hypothesis> kept;
   for (const Hypothesis& hypothesis : hypotheses) {
     // cos(2π k·p) stays itself when p ↦ A·p and k ↦ A⁻ᵀ·k.
-    const Eigen::Matrix2d carry = linearOf(hypothesis, scale_axes).inverse().transpose();
+    const Eigen::Matrix2d carry = hypothesis.linear(scale_axes).inverse().transpose();
     const bool any = std::any_of(moving.begin(), moving.end(), [&](const Wave& from) {
       return std::any_of(fixed.begin(), fixed.end(),
                          [&](const Wave& to) { return fits(carry * from.vector, to.vector); });

@@ -1,5 +1,5 @@
 // What rows give away before anything is searched: a wave in one map must be a wave in the other,
-// which leaves a curve of headings and scales out of the whole space (research notes §2 B).
+// which leaves a curve of headings and scales out of the whole space.
 #pragma once
 
 #include <Eigen/Core>

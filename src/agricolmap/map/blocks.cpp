@@ -5,19 +5,16 @@
 #include <cmath>
 #include <limits>
 
+#include "agricolmap/core/robust.hpp"
+
 namespace agricolmap::map {
 namespace {
 
 /// The values at the 0.5 % and 99.5 % ranks.
 std::pair<double, double> innerRange(std::vector<double> values) {
-  const auto rank = [&](double share) {
-    const auto nth = values.begin() +
-                     static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
-  };
-  const double low = rank(0.005);
-  return {low, rank(0.995)};
+  const auto last = static_cast<double>(values.size() - 1);
+  const double low = valueAtRank(values, static_cast<std::size_t>(0.005 * last));
+  return {low, valueAtRank(values, static_cast<std::size_t>(0.995 * last))};
 }
 
 }  // namespace

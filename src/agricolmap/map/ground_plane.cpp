@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "agricolmap/core/robust.hpp"
+
 namespace agricolmap::map {
 namespace {
 
@@ -19,17 +21,6 @@ constexpr double kFirstRelief = 0.2;
 constexpr double kBelow = 0.1;
 /// Heights among the low points at which a plane under the canopy is sought.
 constexpr double kStarts[] = {0.02, 0.1, 0.25, 0.5};
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double tukeyWeight(double residual, double limit) {
-  const double u = residual / limit;
-  return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
-}
 
 /// One step of weighted least squares.
 Eigen::Vector3d solvePlane(const LevelPoints& points, const std::vector<double>& weights,
@@ -51,7 +42,7 @@ double supportOf(const GroundPlane& plane, const LevelPoints& points,
   double support = 0.0;
   for (const Eigen::Vector3d& point : points) {
     const double over = plane.over(point, centre);
-    support += tukeyWeight(over, kRelief) - (over < -kBelow ? 1.0 : 0.0);
+    support += tukeyWeight(over / kRelief) - (over < -kBelow ? 1.0 : 0.0);
   }
   return support;
 }
@@ -99,9 +90,9 @@ GroundPlane fitPlane(const LevelPoints& points, const Eigen::Vector3d& centre, d
     for (std::size_t i = 0; i < points.size(); ++i) {
       absolute[i] = std::abs(plane.over(points[i], centre));
     }
-    plane.deviation = 1.4826 * median(absolute);
+    plane.deviation = deviationFrom(std::vector<double>(absolute));
     const double limit = 4.685 * std::max(plane.deviation, 1e-4);
-    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = tukeyWeight(absolute[i], limit);
+    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = tukeyWeight(absolute[i] / limit);
   }
   return plane;
 }
@@ -122,7 +113,7 @@ SupportedPlane findPlaneUnder(const LevelPoints& points, const Eigen::Vector3d& 
     double limit = kFirstRelief;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
       for (std::size_t i = 0; i < points.size(); ++i) {
-        weights[i] = tukeyWeight(found.plane.over(points[i], centre), limit);
+        weights[i] = tukeyWeight(found.plane.over(points[i], centre) / limit);
       }
       found.plane.slope_and_height = solvePlane(points, weights, centre, cell);
       limit = std::max(kRelief, 0.8 * limit);
@@ -135,7 +126,7 @@ SupportedPlane findPlaneUnder(const LevelPoints& points, const Eigen::Vector3d& 
     const double over = std::abs(best.plane.over(point, centre));
     if (over < kRelief) near.push_back(over);
   }
-  best.plane.deviation = near.empty() ? kRelief : 1.4826 * median(std::move(near));
+  best.plane.deviation = near.empty() ? kRelief : deviationFrom(near);
   return best;
 }
 

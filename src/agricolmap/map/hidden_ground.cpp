@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "agricolmap/core/robust.hpp"
 #include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::map {
@@ -36,13 +37,7 @@ Raster<float> bareGround(const GridMap& map, double share) {
     height.push_back(map.height[i]);
   }
   const auto limit = [&](std::vector<float>& values) {
-    const auto at = [&](double part) {
-      const auto place =
-          values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size()));
-      std::nth_element(values.begin(), place, values.end());
-      return *place;
-    };
-    const float low = at(0.1), high = at(0.9);
+    const float low = quantile(values, 0.1), high = quantile(values, 0.9);
     return std::pair{low + static_cast<float>(share) * (high - low), high > low};
   };
   Raster<float> bare(map.frame.rows, map.frame.cols);

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <unordered_map>
 #include <vector>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/map/ground_plane.hpp"
@@ -190,7 +190,7 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
   centre /= static_cast<double>(points.size());
 
   Levelling result = levelFrom(Eigen::Affine3d::Identity(), cloud, points, centre, options);
-  const double limit = options.max_tilt_deg * std::numbers::pi / 180.0;
+  const double limit = radians(options.max_tilt_deg);
   // From upright, a steep plane is not always found; the plane through all points is a start that
   // any tilt has. But a narrow strip of a tall crop is as thick as it is wide, and its plane may
   // stand on edge: then upright was the better start.
@@ -207,7 +207,7 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
     throw InputError(fmt::format(
         "{}: its ground plane is tilted by {:.0f} deg (level.max_tilt_deg is {}); z must point up: "
         "give the cloud's attitude in offset.xyz or --prior",
-        cloud.name, result.tilt * 180.0 / std::numbers::pi, options.max_tilt_deg));
+        cloud.name, degrees(result.tilt), options.max_tilt_deg));
   }
   result.levelled_from_guess =
       Eigen::Translation3d(0.0, 0.0, -centre.z()) * result.levelled_from_guess;

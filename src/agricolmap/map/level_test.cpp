@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 
@@ -14,10 +14,9 @@ namespace {
 /// A 10 × 2.2 m strip with plants on 30 % of it and flying points.
 Cloud makeStrip(double roll_deg, double pitch_deg, double height) {
   Random random(7);
-  const Eigen::Affine3d tilt(
-      Eigen::Translation3d(0, 0, height) *
-      Eigen::AngleAxisd(roll_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitX()) *
-      Eigen::AngleAxisd(pitch_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitY()));
+  const Eigen::Affine3d tilt(Eigen::Translation3d(0, 0, height) *
+                             Eigen::AngleAxisd(radians(roll_deg), Eigen::Vector3d::UnitX()) *
+                             Eigen::AngleAxisd(radians(pitch_deg), Eigen::Vector3d::UnitY()));
   Cloud cloud;
   cloud.name = "strip";
   for (int i = 0; i < 50000; ++i) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/raster.hpp"
 #include "agricolmap/map/data_term.hpp"
@@ -43,19 +44,14 @@ struct SignalSample {
 /// Bilinear between the cell centres around `point` (levelled frame [m]).
 inline SignalSample sampleSignal(const SignalMap& map, const Eigen::Vector2d& point) {
   const Eigen::Vector2d cell = map.frame.cellOf(point);
-  const double floor_c = std::floor(cell.x());
-  const double floor_r = std::floor(cell.y());
   SignalSample sample;
-  if (!(floor_c >= 0.0 && floor_r >= 0.0 && floor_c + 1.0 < map.frame.cols &&
-        floor_r + 1.0 < map.frame.rows)) {
-    return sample;
-  }
-  const auto u = static_cast<float>(cell.x() - floor_c);
-  const auto v = static_cast<float>(cell.y() - floor_r);
-  const std::size_t i = map.weight.index(static_cast<int>(floor_r), static_cast<int>(floor_c));
+  const auto cells = cellsWithin<float>(map.frame.rows, map.frame.cols, cell.x(), cell.y());
+  if (!cells) return sample;
+  const std::size_t i = map.weight.index(cells->row, cells->col);
   const std::size_t j = i + static_cast<std::size_t>(map.frame.cols);
-  const float corner[4] = {(1 - u) * (1 - v) * map.weight[i], u * (1 - v) * map.weight[i + 1],
-                           (1 - u) * v * map.weight[j], u * v * map.weight[j + 1]};
+  const auto [a, b, c, d] = cells->shares();
+  const float corner[4] = {a * map.weight[i], b * map.weight[i + 1], c * map.weight[j],
+                           d * map.weight[j + 1]};
   sample.weight = corner[0] + corner[1] + corner[2] + corner[3];
   if (sample.weight <= 0.0F) return sample;
   for (int k = 0; k < kSignalChannels; ++k) {

@@ -1,14 +1,16 @@
-// A small row field for tests: plants of several leaves, seen twice with independent noise.
+// Fields for tests: rows of plants of several leaves, seen twice with independent noise, and smooth
+// texture.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
-#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::testing {
 
@@ -114,6 +116,54 @@ inline map::GridMap viewOf(const Truth& truth, const TestField& field, const map
       ++map.filled;
     }
   }
+  return map;
+}
+
+/// Smooth bumps and dents at random places of a box: a texture that cells of any size can sample.
+class BumpField {
+ public:
+  /// `least` and `most`: size of a bump, its deviation [m].
+  BumpField(std::uint64_t seed, int count, const map::Box2& box, double least, double most) {
+    Random random(seed);
+    for (int i = 0; i < count; ++i) {
+      const double x = random.uniform(box.min().x(), box.max().x());
+      const double y = random.uniform(box.min().y(), box.max().y());
+      const double size = random.uniform(least, most);
+      bumps_.push_back({{x, y}, size, random.normal()});
+    }
+  }
+  float at(const Eigen::Vector2d& p) const {
+    double sum = 0.0;
+    for (const Bump& bump : bumps_) {
+      const double d2 = (p - bump.at).squaredNorm() / (bump.size * bump.size);
+      if (d2 < 12.0) sum += bump.height * std::exp(-0.5 * d2);
+    }
+    return static_cast<float>(sum);
+  }
+
+ private:
+  struct Bump {
+    Eigen::Vector2d at;
+    double size;
+    double height;
+  };
+  std::vector<Bump> bumps_;
+};
+
+/// A signal map that shows `value(point)` in both channels, in the heights half as strong.
+template <typename Value>
+map::SignalMap signalOf(const GridFrame& frame, const Value& value) {
+  map::SignalMap map;
+  map.frame = frame;
+  map.weight = Raster<float>(frame.rows, frame.cols, 1.0F);
+  for (auto& channel : map.channel) channel = Raster<float>(frame.rows, frame.cols);
+  for (int row = 0; row < frame.rows; ++row) {
+    for (int col = 0; col < frame.cols; ++col) {
+      map.channel[0](row, col) = static_cast<float>(value(frame.centre(row, col)));
+      map.channel[1](row, col) = 0.5F * map.channel[0](row, col);
+    }
+  }
+  for (double& deviation : map.deviation) deviation = 1.0;
   return map;
 }
 

@@ -8,6 +8,7 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::map {
 
@@ -85,7 +86,7 @@ struct Class {
   double count = 0.0;
   double mean = 0.0;
   double median = 0.0;
-  double deviation = 0.0;  ///< 1.4826 · median absolute deviation, at least half a bin
+  double deviation = 0.0;  ///< from the median absolute deviation, at least half a bin
 };
 
 /// Bin below which (and in which) `share` of the counts in [begin, end) lie.
@@ -117,7 +118,7 @@ Class classOf(const Histogram& histogram, int begin, int end) {
     if (median - reach >= begin) inside += histogram.at(median - reach);
     if (median + reach < end) inside += histogram.at(median + reach);
   }
-  result.deviation = 1.4826 * std::max(0.5, static_cast<double>(reach)) * histogram.width;
+  result.deviation = kMadToDeviation * std::max(0.5, static_cast<double>(reach)) * histogram.width;
   return result;
 }
 

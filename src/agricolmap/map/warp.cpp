@@ -1,7 +1,9 @@
 #include "agricolmap/map/warp.hpp"
 
+#include <array>
 #include <cmath>
 
+#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap::map {
@@ -28,28 +30,27 @@ GridFrame frameAround(const GridFrame& frame, const Eigen::Affine2d& warped_from
 
 /// Writes cell `to` of `out` from around `place` (continuous column, row) of `map`.
 void sampleCell(const GridMap& map, const Eigen::Vector2d& place, GridMap& out, std::size_t to) {
-  const int col0 = static_cast<int>(std::floor(place.x()));
-  const int row0 = static_cast<int>(std::floor(place.y()));
+  const auto cells = cellsAround<double>(place.x(), place.y());
+  const std::array<double, 4> shares = cells.shares();
   float known = 0.0F;
   float heaviest = 0.0F;
   float weight = 0.0F;
   float height = 0.0F;
   float exg = 0.0F;
-  for (int row = row0; row <= row0 + 1; ++row) {
-    for (int col = col0; col <= col0 + 1; ++col) {
-      if (!map.weight.contains(row, col) || !map.valid(row, col)) continue;
-      const std::size_t i = map.weight.index(row, col);
-      const auto share =
-          static_cast<float>((1.0 - std::abs(place.x() - col)) * (1.0 - std::abs(place.y() - row)));
-      known += share;
-      weight += share * map.weight[i];
-      height += share * map.height[i];
-      exg += share * map.exg[i];
-      if (share > heaviest) {
-        heaviest = share;
-        out.colour[to] = map.colour[i];
-        out.nearest[to] = map.nearest[i];
-      }
+  for (int k = 0; k < 4; ++k) {
+    const int row = cells.row + (k >> 1);
+    const int col = cells.col + (k & 1);
+    if (!map.weight.contains(row, col) || !map.valid(row, col)) continue;
+    const std::size_t i = map.weight.index(row, col);
+    const auto share = static_cast<float>(shares[static_cast<std::size_t>(k)]);
+    known += share;
+    weight += share * map.weight[i];
+    height += share * map.height[i];
+    exg += share * map.exg[i];
+    if (share > heaviest) {
+      heaviest = share;
+      out.colour[to] = map.colour[i];
+      out.nearest[to] = map.nearest[i];
     }
   }
   if (known < 0.5F) return;

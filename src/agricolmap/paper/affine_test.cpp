@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "agricolmap/core/pose_distance.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/transform.hpp"
@@ -14,7 +15,7 @@ namespace {
 /// R(yaw)·A·diag(scale)·Aᵀ with a shift.
 Eigen::Affine2d poseOf(double yaw, double sx, double sy, const Eigen::Matrix2d& axes) {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
-  pose.linear() = rotation2(yaw) * axes * Eigen::Vector2d(sx, sy).asDiagonal() * axes.transpose();
+  pose.linear() = YawScales{yaw, {sx, sy}}.linear(axes);
   pose.translation() = Eigen::Vector2d(3.0, -7.0);
   return pose;
 }
@@ -39,13 +40,8 @@ std::vector<Match> stripMatches(const Eigen::Affine2d& pose, std::size_t count, 
 
 /// Largest displacement between two maps over the strip [m].
 double gap(const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
-  double farthest = 0.0;
-  for (const double x : {100.0, 110.0}) {
-    for (const double y : {50.0, 52.0}) {
-      farthest = std::max(farthest, (a * Eigen::Vector2d(x, y) - b * Eigen::Vector2d(x, y)).norm());
-    }
-  }
-  return farthest;
+  return poseDistance(cornersOf({Eigen::Vector2d(100.0, 50.0), Eigen::Vector2d(110.0, 52.0)}), a,
+                      b);
 }
 
 TEST(EstimateAffine, RecoversExactMaps) {
@@ -56,11 +52,6 @@ TEST(EstimateAffine, RecoversExactMaps) {
       const auto estimate = estimateAffine(stripMatches(truth, 50, 0.0, 0.0, 1), axes, {});
       ASSERT_TRUE(estimate.ok());
       EXPECT_LT(gap(estimate.fixed_from_moving, truth), 1e-9);
-      EXPECT_NEAR(estimate.yaw, yaw, 1e-10);
-      EXPECT_NEAR(estimate.scale.x(), 1.3, 1e-10);
-      EXPECT_NEAR(estimate.scale.y(), 0.7, 1e-10);
-      EXPECT_EQ(estimate.inliers.size(), 50U);
-      EXPECT_LT(estimate.rms, 1e-9);
     }
   }
 }
@@ -96,8 +87,6 @@ TEST(EstimateAffine, WithstandsOutliersAndNoise) {
     const auto estimate = estimateAffine(matches, Eigen::Matrix2d::Identity(), {});
     ASSERT_TRUE(estimate.ok());
     EXPECT_LT(gap(estimate.fixed_from_moving, truth), 0.015);
-    EXPECT_NEAR(static_cast<double>(estimate.inliers.size()), 1200.0, 60.0);
-    EXPECT_NEAR(estimate.rms, 0.03 * std::sqrt(2.0), 0.02);
   }
 }
 
@@ -110,10 +99,8 @@ TEST(EstimateAffine, FreeModelSeesShearThatTheOtherCannot) {
   const auto free = estimateAffine(matches, Eigen::Matrix2d::Identity(), options);
   ASSERT_TRUE(free.ok());
   EXPECT_LT(gap(free.fixed_from_moving, truth), 1e-6);
-  EXPECT_NEAR(free.shear, 0.2, 1e-6);
   const auto tied = estimateAffine(matches, Eigen::Matrix2d::Identity(), {});
   ASSERT_TRUE(tied.ok());
-  EXPECT_EQ(tied.shear, 0.0);
   EXPECT_GT(gap(tied.fixed_from_moving, truth), 0.05);
 }
 
@@ -122,7 +109,6 @@ TEST(EstimateAffine, NamesWhatIsMissing) {
   const Eigen::Affine2d truth = poseOf(0.0, 1.0, 1.0, axes);
   const auto few = estimateAffine(stripMatches(truth, 5, 0.0, 0.0, 1), axes, {});
   EXPECT_EQ(few.status, AffineStatus::kTooFewMatches);
-  EXPECT_EQ(few.matches, 5U);
   EXPECT_TRUE(few.fixed_from_moving.matrix().array().isNaN().all());
 
   std::vector<Match> line;
@@ -140,7 +126,7 @@ TEST(EstimateAffine, NamesWhatIsMissing) {
     for (const auto& matches : {line, spot, mirrored}) {
       const auto estimate = estimateAffine(matches, axes, options);
       EXPECT_EQ(estimate.status, AffineStatus::kDegenerate);
-      EXPECT_TRUE(std::isnan(estimate.rms));
+      EXPECT_TRUE(estimate.fixed_from_moving.matrix().array().isNaN().all());
     }
   }
 }

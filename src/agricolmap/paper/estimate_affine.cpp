@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/core/robust.hpp"
 #include "agricolmap/core/scaled_rotation.hpp"
-#include "agricolmap/core/transform.hpp"
 
 namespace agricolmap::paper {
 
@@ -37,8 +37,7 @@ namespace {
 constexpr std::size_t kMinimal = 4;    ///< matches of a random fit; 3 would do, 4 is steadier
 constexpr std::size_t kScored = 1000;  ///< matches that a random fit is judged by
 constexpr int kReweights = 30;
-constexpr double kMedianToSigma = 1.1774;  ///< median of a 2-D normal's distance, in deviations
-constexpr double kLeastSigma = 1e-6;       ///< keeps exact data from dividing by zero [m]
+constexpr double kLeastSigma = 1e-6;  ///< keeps exact data from dividing by zero [m]
 
 /// Weighted least squares of any 2-D affine map; nothing when the points span no area.
 std::optional<Eigen::Affine2d> fitFree(std::span<const Match> matches,
@@ -93,12 +92,6 @@ class Problem {
     return result;
   }
 
-  static double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  }
-
   /// The random minimal fit with the smallest median residual.
   std::optional<Eigen::Affine2d> start() const {
     const std::size_t step = (matches_.size() + kScored - 1) / kScored;
@@ -127,10 +120,9 @@ class Problem {
     std::vector<double> weights(matches_.size());
     for (int k = 0; k < kReweights; ++k) {
       const std::vector<double> distance = residuals(pose, 1);
-      sigma = std::max(kLeastSigma, median(distance) / kMedianToSigma);
+      sigma = sigmaOf(distance);
       for (std::size_t i = 0; i < weights.size(); ++i) {
-        const double r = distance[i] / (options_.tukey * sigma);
-        weights[i] = r < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;
+        weights[i] = tukeyWeight(distance[i] / (options_.tukey * sigma));
       }
       const auto next = fit(matches_, weights);
       if (!next) return std::nullopt;
@@ -138,26 +130,23 @@ class Problem {
       pose = *next;
       if (change < 1e-10) break;
     }
-    sigma = std::max(kLeastSigma, median(residuals(pose, 1)) / kMedianToSigma);
+    sigma = sigmaOf(residuals(pose, 1));
     return pose;
   }
 
-  const Eigen::Matrix2d& axes() const { return axes_; }
-
  private:
+  static double sigmaOf(std::vector<double> distances) {
+    return std::max(kLeastSigma, median(distances) / kMedianInPlane);
+  }
+
   std::span<const Match> matches_;
   Eigen::Matrix2d axes_;
   const AffineOptions& options_;
 };
 
-AffineEstimate failure(AffineStatus status, std::size_t matches) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  AffineEstimate estimate;
-  estimate.status = status;
-  estimate.matches = matches;
-  estimate.fixed_from_moving.matrix().setConstant(kNan);
-  estimate.scale.setConstant(kNan);
-  estimate.yaw = estimate.shear = estimate.rms = estimate.sigma = kNan;
+AffineEstimate failure(AffineStatus status) {
+  AffineEstimate estimate{status, {}};
+  estimate.fixed_from_moving.matrix().setConstant(std::numeric_limits<double>::quiet_NaN());
   return estimate;
 }
 
@@ -167,34 +156,18 @@ AffineEstimate estimateAffine(std::span<const Match> matches, const Eigen::Matri
                               const AffineOptions& options) {
   checkOptions(options);
   const auto least = static_cast<std::size_t>(options.least);
-  if (matches.size() < least) return failure(AffineStatus::kTooFewMatches, matches.size());
+  if (matches.size() < least) return failure(AffineStatus::kTooFewMatches);
   const Problem problem(matches, scale_axes, options);
   const auto start = problem.start();
-  if (!start) return failure(AffineStatus::kDegenerate, matches.size());
-  AffineEstimate estimate;
-  const auto pose = problem.refine(*start, estimate.sigma);
-  if (!pose) return failure(AffineStatus::kDegenerate, matches.size());
-  estimate.matches = matches.size();
+  if (!start) return failure(AffineStatus::kDegenerate);
+  double sigma = 0.0;
+  const auto pose = problem.refine(*start, sigma);
+  if (!pose) return failure(AffineStatus::kDegenerate);
   const std::vector<double> distance = problem.residuals(*pose, 1);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (distance[i] > options.tukey * estimate.sigma) continue;
-    sum += distance[i] * distance[i];
-    estimate.inliers.push_back(static_cast<std::uint32_t>(i));
-  }
-  if (estimate.inliers.size() < least) {
-    return failure(AffineStatus::kTooFewMatches, matches.size());
-  }
-  estimate.status = AffineStatus::kOk;
-  estimate.rms = std::sqrt(sum / static_cast<double>(estimate.inliers.size()));
-  estimate.fixed_from_moving = *pose;
-  // In the axes' own frame the map is R(yaw)·diag(scale), shear apart.
-  const HorizontalParts parts =
-      splitHorizontal(problem.axes().transpose() * pose->linear() * problem.axes());
-  estimate.yaw = problem.axes().determinant() < 0.0 ? -parts.yaw : parts.yaw;
-  estimate.scale = {parts.scale_x, parts.scale_y};
-  estimate.shear = options.model == AffineModel::kFree ? parts.shear : 0.0;
-  return estimate;
+  const auto agreeing = std::count_if(distance.begin(), distance.end(),
+                                      [&](double d) { return d <= options.tukey * sigma; });
+  if (static_cast<std::size_t>(agreeing) < least) return failure(AffineStatus::kTooFewMatches);
+  return {AffineStatus::kOk, *pose};
 }
 
 }  // namespace agricolmap::paper

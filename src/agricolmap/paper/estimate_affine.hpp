@@ -2,10 +2,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/placement.hpp"
@@ -34,17 +32,9 @@ enum class AffineStatus {
 };
 std::string_view name(AffineStatus status);
 
-/// Everything but `status` and `matches` is NaN or empty unless `ok()`.
 struct AffineEstimate {
   AffineStatus status = AffineStatus::kTooFewMatches;
-  std::size_t matches = 0;             ///< given
-  Eigen::Affine2d fixed_from_moving;   ///< levelled frames [m]
-  double yaw = 0.0;                    ///< of the first scale axis [rad]
-  Eigen::Vector2d scale;               ///< along the scale axes
-  double shear = 0.0;                  ///< of the free model, as in HorizontalParts; else 0
-  std::vector<std::uint32_t> inliers;  ///< indices of matches within tukey·sigma
-  double rms = 0.0;                    ///< of the inliers' residual distances [m]
-  double sigma = 0.0;                  ///< robust deviation of a residual's coordinate [m]
+  Eigen::Affine2d fixed_from_moving;  ///< levelled frames [m]; NaN unless ok()
   bool ok() const { return status == AffineStatus::kOk; }
 };
 

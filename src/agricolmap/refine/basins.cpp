@@ -11,7 +11,8 @@ constexpr double kGain = 0.002;
 // The correlation counts shared cells only: it must not be bought by leaving the map.
 constexpr double kLeastOverlap = 0.98;
 
-/// The seen cells as a rectangle of the same spread: its axes, long one first, and half sides.
+/// The seen cells as a rectangle of the same spread: its axes, long one first, and half sides. Not
+/// map::StripFrame, whose rectangle holds nearly all cells: of an L or a bow that is much larger.
 struct Footprint {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();

@@ -6,6 +6,7 @@
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/map/test_field.hpp"
 
 namespace agricolmap::refine {
 namespace {
@@ -29,15 +30,7 @@ class Drilled {
                               0.25);
   }
   map::SignalMap map(int rows, int cols, const Eigen::Vector2d& corner) const {
-    map::SignalMap made;
-    made.frame = {corner, kCell, rows, cols};
-    made.weight = Raster<float>(rows, cols, 1.0F);
-    for (auto& channel : made.channel) channel = Raster<float>(rows, cols);
-    for (int r = 0; r < rows; ++r) {
-      for (int c = 0; c < cols; ++c) made.channel[0](r, c) = at(made.frame.centre(r, c));
-    }
-    made.deviation[0] = 1.0;
-    return made;
+    return testing::signalOf({corner, kCell, rows, cols}, [&](const auto& p) { return at(p); });
   }
 
  private:

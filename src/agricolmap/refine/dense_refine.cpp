@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/pose_distance.hpp"
 
 namespace agricolmap::refine {
 
@@ -105,13 +107,10 @@ class FixedReader {
     Look look;
     const float col = a_[0] * s.x + a_[1] * s.y + a_[2];
     const float row = a_[3] * s.x + a_[4] * s.y + a_[5];
-    const float fc = std::floor(col), fr = std::floor(row);
-    if (!(fc >= 0.0F && fr >= 0.0F && fc + 1.0F < static_cast<float>(map_.frame.cols) &&
-          fr + 1.0F < static_cast<float>(map_.frame.rows))) {
-      return look;
-    }
-    const float u = col - fc, v = row - fr;
-    const std::size_t i = map_.weight.index(static_cast<int>(fr), static_cast<int>(fc));
+    const auto cells = cellsWithin<float>(map_.frame.rows, map_.frame.cols, col, row);
+    if (!cells) return look;
+    const float u = cells->u, v = cells->v;
+    const std::size_t i = map_.weight.index(cells->row, cells->col);
     const std::size_t j = i + static_cast<std::size_t>(map_.frame.cols);
     const Raster<float>& w = map_.weight;
     if (std::min({w[i], w[i + 1], w[j], w[j + 1]}) < kMinWeight) return look;
@@ -238,14 +237,8 @@ void updateNoise(const Sums& sums, Noise& noise) {
 
 /// Largest movement of a corner of the moving map between two parameter sets [m].
 double cornerMove(const Parameters& a, const Parameters& b, const Eigen::Vector2d& half) {
-  double worst = 0.0;
-  for (const double x : {-half.x(), half.x()}) {
-    for (const double y : {-half.y(), half.y()}) {
-      const Parameters d = a - b;
-      worst = std::max(worst, std::hypot(d[0] * x + d[1] * y + d[2], d[3] * x + d[4] * y + d[5]));
-    }
-  }
-  return worst;
+  const Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  return poseDistance(cornersOf({-half, half}), affineOf(a, middle), affineOf(b, middle));
 }
 
 double correlationOf(const Sums& sums, const bool used[]) {
@@ -273,7 +266,7 @@ DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap&
   Noise noise;
   Sums sums;
   result.status = RefineStatus::kConverged;
-  for (result.iterations = 0; result.iterations < options.iterations; ++result.iterations) {
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
     sums = pass(samples, FixedReader(fixed, current), noise, options.robust, used);
     if (sums.cells < kMinCells) {
       result.status = RefineStatus::kNoOverlap;

@@ -27,7 +27,6 @@ enum class RefineStatus { kConverged, kNoOverlap, kDiverged };
 struct DenseRefineResult {
   RefineStatus status = RefineStatus::kNoOverlap;
   Eigen::Affine2d fixed_from_moving = Eigen::Affine2d::Identity();  ///< meaningful if converged
-  int iterations = 0;
   double overlap = 0.0;      ///< share of the moving map's seen cells that the fixed map sees
   double correlation = 0.0;  ///< robustly weighted, over both channels
 };

@@ -5,33 +5,17 @@
 #include <functional>
 
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/core/random.hpp"
-#include "agricolmap/core/transform.hpp"
+#include "agricolmap/core/pose_distance.hpp"
+#include "agricolmap/map/test_field.hpp"
 
 namespace agricolmap::refine {
 namespace {
 
-/// Plants as bumps at random places of a 14 × 6 m field; smooth, so that any cell can sample it.
-class Field {
- public:
-  explicit Field(int seed) {
-    Random random(static_cast<std::uint64_t>(seed));
-    for (int i = 0; i < 400; ++i) {
-      plants_.push_back({random.uniform(-2, 12), random.uniform(-2, 4), random.uniform(0.5, 1)});
-    }
-  }
-  float at(const Eigen::Vector2d& p) const {
-    double sum = 0.0;
-    for (const Eigen::Vector3d& plant : plants_) {
-      const double d2 = (p - plant.head<2>()).squaredNorm();
-      if (d2 < 0.25) sum += plant.z() * std::exp(-d2 / (2 * 0.06 * 0.06));
-    }
-    return static_cast<float>(sum);
-  }
-
- private:
-  std::vector<Eigen::Vector3d> plants_;
-};
+/// Plants at random places of a 14 × 6 m field, the same for a seed.
+testing::BumpField plants(int seed) {
+  return {static_cast<std::uint64_t>(seed), 400,
+          map::Box2(Eigen::Vector2d(-2.0, -2.0), Eigen::Vector2d(12.0, 4.0)), 0.06, 0.06};
+}
 
 map::SignalMap sample(const GridFrame& frame,
                       const std::function<float(const Eigen::Vector2d&)>& f) {
@@ -57,8 +41,8 @@ struct Case {
 
 /// The moving map shows truth⁻¹ of the field, with noise of its own where `other` says so.
 Case makeCase(int seed, double unshared) {
-  const Field field(seed);
-  const Field other(seed + 1000);
+  const testing::BumpField field = plants(seed);
+  const testing::BumpField other = plants(seed + 1000);
   Case c;
   c.truth = Eigen::Translation2d(0.3, -0.2) * Eigen::Rotation2Dd(0.05);
   c.truth.linear() *= Eigen::Vector2d(1.04, 0.97).asDiagonal();
@@ -70,13 +54,7 @@ Case makeCase(int seed, double unshared) {
 }
 
 double worstCorner(const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
-  double worst = 0.0;
-  for (const double x : {0.0, 10.0}) {
-    for (const double y : {0.0, 2.2}) {
-      worst = std::max(worst, (a * Eigen::Vector2d(x, y) - b * Eigen::Vector2d(x, y)).norm());
-    }
-  }
-  return worst;
+  return poseDistance(cornersOf({Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(10.0, 2.2)}), a, b);
 }
 
 TEST(DenseRefine, FindsTheAffineFromACellAway) {
@@ -103,8 +81,8 @@ TEST(DenseRefine, ImprovesThoughHalfOfThePlantsDiffer) {
 TEST(DenseRefine, IsNotDrawnToWhereTheFixedMapIsCalm) {
   // Plants grow larger across the strip, and most of what the moving map shows is its own.
   for (int seed = 1; seed <= 5; ++seed) {
-    const Field field(seed);
-    const Field other(seed + 1000);
+    const testing::BumpField field = plants(seed);
+    const testing::BumpField other = plants(seed + 1000);
     const auto grown = [&](const Eigen::Vector2d& p) {
       return static_cast<float>(std::clamp(1.0 + 0.5 * p.y(), 0.2, 3.0)) * field.at(p);
     };

@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::refine {
 
@@ -69,11 +71,9 @@ class GroundModel {
   double at(int row, int col) const {
     const double v = static_cast<double>(row - row0_) / step_;
     const double u = static_cast<double>(col - col0_) / step_;
-    const int r = std::clamp(static_cast<int>(v), 0, nodes_.rows() - 2);
-    const int c = std::clamp(static_cast<int>(u), 0, nodes_.cols() - 2);
-    const double fv = v - r, fu = u - c;
-    return (1 - fv) * ((1 - fu) * node(r, c) + fu * node(r, c + 1)) +
-           fv * ((1 - fu) * node(r + 1, c) + fu * node(r + 1, c + 1));
+    return cellsClamped<double>(nodes_.rows(), nodes_.cols(), u, v).mean([&](int r, int c) {
+      return static_cast<double>(nodes_(r, c));
+    });
   }
 
  private:
@@ -89,11 +89,8 @@ class GroundModel {
       }
     }
     if (heights.size() < 10) return std::numeric_limits<float>::quiet_NaN();
-    const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 10);
-    std::nth_element(heights.begin(), low, heights.end());
-    return *low;
+    return quantile(heights, 0.1);
   }
-  double node(int r, int c) const { return static_cast<double>(nodes_(r, c)); }
 
   int row0_;
   int col0_;
@@ -152,26 +149,19 @@ std::vector<double> groundWeights(const std::vector<Pair>& pairs, double toleran
   share = static_cast<double>(low) / static_cast<double>(heights.size());
   double scale = tolerance;
   if (share < kMinGroundShare) {
-    std::vector<double> sorted = heights;
-    const auto rank = sorted.begin() + static_cast<std::ptrdiff_t>(
-                                           kMinGroundShare * static_cast<double>(sorted.size()));
-    std::nth_element(sorted.begin(), rank, sorted.end());
-    scale = std::max(scale, *rank);
+    scale = std::max(scale, quantile(std::vector<double>(heights), kMinGroundShare));
   }
   for (double& height : heights) height = std::exp(-0.5 * (height / scale) * (height / scale));
   return heights;
 }
 
-/// Median of |values| where `weights` are at least 0.6, so of the ground.
+/// Robust deviation of `values` from 0 where `weights` are at least 0.6, so of the ground.
 double groundDeviation(const std::vector<double>& values, const std::vector<double>& weights) {
   std::vector<double> ground;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (weights[i] >= 0.6) ground.push_back(std::abs(values[i]));
   }
-  if (ground.empty()) return 0.0;
-  const auto middle = ground.begin() + static_cast<std::ptrdiff_t>(ground.size() / 2);
-  std::nth_element(ground.begin(), middle, ground.end());
-  return 1.4826 * *middle;
+  return ground.empty() ? 0.0 : deviationFrom(ground);
 }
 
 /// difference = o + s·place by iteratively reweighted least squares (Tukey) over the ground, with a
@@ -196,8 +186,7 @@ Eigen::Vector3d fitPlane(const std::vector<Pair>& pairs, const std::vector<doubl
     deviation = std::max(1e-4, groundDeviation(residuals, ground));
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const double side = residuals[i] > 0.0 ? kCanopyBelow : 1.0;
-      const double u = side * residuals[i] / (robust * deviation);
-      weights[i] = std::abs(u) < 1.0 ? ground[i] * (1 - u * u) * (1 - u * u) : 0.0;
+      weights[i] = ground[i] * tukeyWeight(side * residuals[i] / (robust * deviation));
     }
   }
   return model;
@@ -221,10 +210,8 @@ double levelDeviation(const map::GridMap& fixed, const map::GridMap& moving,
   std::vector<double> grounds;
   grounds.reserve(pairs.size());
   for (const Pair& pair : pairs) grounds.push_back(pair.fixed_ground);
-  const auto low = grounds.begin() + static_cast<std::ptrdiff_t>(
-                                         kMinGroundShare * static_cast<double>(grounds.size()));
-  std::nth_element(grounds.begin(), low, grounds.end());
-  return std::hypot(fixed.ground_deviation, moving.ground_deviation, *low);
+  return std::hypot(fixed.ground_deviation, moving.ground_deviation,
+                    quantile(grounds, kMinGroundShare));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "agricolmap/core/affine_fit.hpp"
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -42,7 +43,7 @@ void checkSeen(const FieldPoints& points) {
 }  // namespace
 
 double stripHeading(const UgvOptions& options, double row_heading) {
-  return row_heading + options.heading_deg * std::numbers::pi / 180.0;
+  return row_heading + radians(options.heading_deg);
 }
 
 Eigen::Vector2d stripRoom(const UgvOptions& options, const Eigen::Vector2d& field_size,
@@ -61,8 +62,7 @@ StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_si
     throw UsageError(fmt::format(
         "a strip of {} x {} m at {:.0f} degrees does not fit into a field of {} x {} m; enlarge "
         "field.width and field.height or shorten ugv.length",
-        options.length, options.width, strip.heading * 180.0 / std::numbers::pi, field_size.x(),
-        field_size.y()));
+        options.length, options.width, degrees(strip.heading), field_size.x(), field_size.y()));
   }
   strip.centre = half + Eigen::Vector2d(random.uniform() * room.x(), random.uniform() * room.y());
   if (options.overhang > 0.0) {

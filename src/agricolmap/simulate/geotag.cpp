@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/random.hpp"
 
 namespace agricolmap::simulate {
 
 Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, double across_rows,
                   std::uint64_t seed) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   Random random = Random::stream(seed, 7);
   const auto magnitude = [&](double value) {
     const double share = random.uniform();
@@ -22,13 +22,13 @@ Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, d
   const double direction = random.uniform(0.0, 2.0 * std::numbers::pi);
   const double shift = magnitude(options.translation);
   Eigen::Vector3d error(shift * std::cos(direction), shift * std::sin(direction), 0.0);
-  const double heading = kDegree * signedError(options.heading_deg);
+  const double heading = radians(signedError(options.heading_deg));
   const double scale_x = 1.0 + signedError(options.scale);
   const double scale_y = 1.0 + signedError(options.scale);
   error.z() = signedError(options.z);
-  const double roll = kDegree * signedError(options.tilt_deg);
-  const double pitch = kDegree * signedError(options.tilt_deg);
-  const double axes = kDegree * options.file_heading_deg;
+  const double roll = radians(signedError(options.tilt_deg));
+  const double pitch = radians(signedError(options.tilt_deg));
+  const double axes = radians(options.file_heading_deg);
   const Eigen::Vector3d begin(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0),
                               random.uniform(-0.5, 0.5));
   const double aside = random.chance(0.5) ? options.across_rows : -options.across_rows;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/simulate/assemble.hpp"
@@ -95,7 +96,7 @@ SimulatedStrip SimulatedField::strip(const SimulationOptions& options, int index
     // The same rows' direction, so that only the plants can tell the fields apart.
     FieldOptions other = options.field;
     other.random_row_heading = false;
-    other.row_heading_deg = field_.rowHeading() * 180.0 / std::numbers::pi;
+    other.row_heading_deg = degrees(field_.rowHeading());
     driven = FieldModel(options.crop, other, seed(6));
   }
   const Visit drive = driveOf(options.views, seed(3));

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::simulate {
 namespace {
@@ -49,9 +51,7 @@ struct StripMap {
     const int c = static_cast<int>(std::floor(p.x()));
     const int r = static_cast<int>(std::floor(p.y()));
     if (!count.contains(r, c)) return;
-    const int sum = rgb.r + rgb.g + rgb.b;
-    const float green =
-        sum == 0 ? 0.0F : static_cast<float>(3 * rgb.g - sum) / static_cast<float>(sum);
+    const float green = map::excessGreen(rgb, map::ExgKind::kChromatic);
     count(r, c) += 1.0F;
     exg(r, c) += (green - exg(r, c)) / count(r, c);
     height(r, c) += (static_cast<float>(p.z() * kCell) - height(r, c)) / count(r, c);
@@ -175,12 +175,12 @@ TEST(Simulate, PriorHasTheErrorsAskedFor) {
   EXPECT_NEAR(std::abs(error.z()), options.geotag.z, 1e-6);
   const Eigen::Matrix3d between = pair.prior.linear().inverse() * pair.nominal.linear();
   const double turn = std::atan2(between(1, 0), between(0, 0));
-  EXPECT_NEAR(std::abs(turn) * 57.29577951308232, 5.0, 1e-9);
+  EXPECT_NEAR(degrees(std::abs(turn)), 5.0, 1e-9);
   for (int k = 0; k < 2; ++k) {
     const double file_over_field = 1.0 / between.col(k).norm();
     EXPECT_NEAR(std::abs(file_over_field - 1.0), 0.2, 1e-9);
   }
-  EXPECT_NEAR(std::atan2(pair.prior(1, 0), pair.prior(0, 0)) * 57.29577951308232, 40.0, 1e-9);
+  EXPECT_NEAR(degrees(std::atan2(pair.prior(1, 0), pair.prior(0, 0))), 40.0, 1e-9);
 }
 
 TEST(Simulate, GeoreferencedFilesNeedNoPrior) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "agricolmap/core/random.hpp"
+#include "agricolmap/map/test_field.hpp"
 
 namespace agricolmap::verdict {
 namespace {
@@ -12,39 +12,10 @@ namespace {
 /// Smooth random texture over a map, moved by `shift(point)`.
 template <typename Shift>
 map::SignalMap texture(const Eigen::Vector2d& corner, int rows, int cols, const Shift& shift) {
-  Random random(3);
-  struct Bump {
-    Eigen::Vector2d at;
-    double size;
-    double height;
-  };
-  std::vector<Bump> bumps;
-  for (int i = 0; i < 2500; ++i) {
-    bumps.push_back({{random.uniform(-1.0, 13.0), random.uniform(-1.0, 5.0)},
-                     random.uniform(0.06, 0.15),
-                     random.normal(1.0)});
-  }
-  map::SignalMap map;
-  map.frame.corner = corner;
-  map.frame.cell = 0.04;
-  map.frame.rows = rows;
-  map.frame.cols = cols;
-  map.weight = Raster<float>(rows, cols, 1.0F);
-  for (auto& channel : map.channel) channel = Raster<float>(rows, cols);
-  for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < cols; ++c) {
-      const Eigen::Vector2d p = map.frame.centre(r, c);
-      const Eigen::Vector2d at = p + shift(p);
-      double sum = 0.0;
-      for (const Bump& bump : bumps) {
-        const double d2 = (at - bump.at).squaredNorm() / (bump.size * bump.size);
-        if (d2 < 12.0) sum += bump.height * std::exp(-0.5 * d2);
-      }
-      map.channel[0](r, c) = static_cast<float>(sum);
-      map.channel[1](r, c) = static_cast<float>(0.5 * sum);
-    }
-  }
-  return map;
+  const testing::BumpField field(3, 2500, {Eigen::Vector2d(-1.0, -1.0), Eigen::Vector2d(13.0, 5.0)},
+                                 0.06, 0.15);
+  return testing::signalOf({corner, 0.04, rows, cols},
+                           [&](const Eigen::Vector2d& p) { return field.at(p + shift(p)); });
 }
 
 /// Of a strip from x = 1 to 11 m, on a map that ends at `end` [m].

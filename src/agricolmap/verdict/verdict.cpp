@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap::verdict {
@@ -79,7 +79,7 @@ std::vector<std::string> contradictions(const Finding& finding, const SearchSpac
                       axis, scale, 1.0 / scale_limit, scale_limit));
     }
   }
-  const double heading = std::abs(parts.yaw) * 180.0 / std::numbers::pi;
+  const double heading = degrees(std::abs(parts.yaw));
   if (!(heading <= space.uncertainty.heading_deg + options.heading_margin_deg)) {
     against.push_back(
         fmt::format("the heading came out {:.1f} deg off the prior's, which allows "

@@ -14,6 +14,7 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::io {
 
@@ -228,10 +229,9 @@ float whiteScale(const std::array<Raster<float>, 3>& values, const Raster<std::u
   }
   if (sample.empty()) return 1.0F;
   if (integers && *std::max_element(sample.begin(), sample.end()) <= 255.0F) return 1.0F;
-  const auto at = sample.begin() + static_cast<std::ptrdiff_t>(
-                                       kWhitePercentile * static_cast<double>(sample.size() - 1));
-  std::nth_element(sample.begin(), at, sample.end());
-  return *at > 0.0F ? 255.0F / *at : 1.0F;
+  const auto last = static_cast<double>(sample.size() - 1);
+  const float white = valueAtRank(sample, static_cast<std::size_t>(kWhitePercentile * last));
+  return white > 0.0F ? 255.0F / white : 1.0F;
 }
 
 void readWide(const Bands& bands, const Section& section, const NoData& nodata,
@@ -338,12 +338,10 @@ void removeFarHeights(Raster<float>& heights, double max_height) {
     if (!std::isnan(heights[i])) sample.push_back(heights[i]);
   }
   if (sample.empty()) return;
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end());
-  const float median = *middle;
+  const float middle = median(sample);
   const auto limit = static_cast<float>(max_height);
   for (float& height : heights) {
-    if (std::abs(height - median) > limit) height = std::numeric_limits<float>::quiet_NaN();
+    if (std::abs(height - middle) > limit) height = std::numeric_limits<float>::quiet_NaN();
   }
 }
 

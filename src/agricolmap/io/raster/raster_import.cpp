@@ -4,10 +4,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/raster/raster_place.hpp"
@@ -33,19 +35,14 @@ float sampleHeight(const Raster<float>& height, const Eigen::Vector2d& pixel) {
   if (!(u >= -0.5 && v >= -0.5 && u <= height.cols() - 0.5 && v <= height.rows() - 0.5)) {
     return kNone;
   }
-  const int col = static_cast<int>(std::floor(u));
-  const int row = static_cast<int>(std::floor(v));
-  const auto fu = static_cast<float>(u - col);
-  const auto fv = static_cast<float>(v - row);
+  const auto cells = cellsClamped<float>(height.rows(), height.cols(), u, v);
+  const std::array<float, 4> shares = cells.shares();
   float weights = 0.0F;
   float sum = 0.0F;
   for (int i = 0; i < 4; ++i) {
-    const int dc = i & 1;
-    const int dr = i >> 1;
-    const float z = height(std::clamp(row + dr, 0, height.rows() - 1),
-                           std::clamp(col + dc, 0, height.cols() - 1));
+    const float z = height(cells.row + (i >> 1) * cells.up, cells.col + (i & 1) * cells.right);
     if (std::isnan(z)) continue;
-    const float weight = (dc == 0 ? 1.0F - fu : fu) * (dr == 0 ? 1.0F - fv : fv);
+    const float weight = shares[static_cast<std::size_t>(i)];
     weights += weight;
     sum += weight * z;
   }

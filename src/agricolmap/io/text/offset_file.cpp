@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/text/number_file.hpp"
@@ -14,7 +14,6 @@
 namespace agricolmap::io {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kRigidTolerance = 1e-6;
 
 }  // namespace
@@ -34,9 +33,9 @@ Eigen::Affine3d readOffset(const std::filesystem::path& path) {
   }
   Eigen::Affine3d world_from_cloud(Eigen::Translation3d(n[0], n[1], n[2]));
   if (n.size() == 6) {
-    world_from_cloud.rotate(Eigen::AngleAxisd(n[5] * kDegree, Eigen::Vector3d::UnitZ()) *
-                            Eigen::AngleAxisd(n[4] * kDegree, Eigen::Vector3d::UnitY()) *
-                            Eigen::AngleAxisd(n[3] * kDegree, Eigen::Vector3d::UnitX()));
+    world_from_cloud.rotate(Eigen::AngleAxisd(radians(n[5]), Eigen::Vector3d::UnitZ()) *
+                            Eigen::AngleAxisd(radians(n[4]), Eigen::Vector3d::UnitY()) *
+                            Eigen::AngleAxisd(radians(n[3]), Eigen::Vector3d::UnitX()));
   }
   return world_from_cloud;
 }
@@ -67,7 +66,7 @@ void writeOffset(const OutputPath& path, const Eigen::Affine3d& world_from_cloud
   std::string text =
       "# x y z [m] roll pitch yaw [deg]: world_from_cloud = T Rz(yaw) Ry(pitch) "
       "Rx(roll)\n";
-  const std::array values{t.x(), t.y(), t.z(), roll / kDegree, pitch / kDegree, yaw / kDegree};
+  const std::array values{t.x(), t.y(), t.z(), degrees(roll), degrees(pitch), degrees(yaw)};
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i > 0) text += ' ';
     text += exactText(values[i]);

@@ -1,5 +1,5 @@
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/test_support.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
@@ -55,10 +55,9 @@ TEST(OffsetFile, RoundTrips) {
   Random random(3);
   for (int i = 0; i < 50; ++i) {
     const double pitch = i == 0 ? 90.0 : i == 1 ? -90.0 : random.uniform(-90, 90);
-    constexpr double kDegree = std::numbers::pi / 180.0;
     Eigen::Affine3d offset(Eigen::Translation3d(5e5 + random.uniform(), 5e6, 300.1));
     offset.rotate(Eigen::AngleAxisd(random.uniform(-3, 3), Eigen::Vector3d::UnitZ()) *
-                  Eigen::AngleAxisd(pitch * kDegree, Eigen::Vector3d::UnitY()) *
+                  Eigen::AngleAxisd(radians(pitch), Eigen::Vector3d::UnitY()) *
                   Eigen::AngleAxisd(random.uniform(-3, 3), Eigen::Vector3d::UnitX()));
     writeOffset(dir / "offset.xyz", offset);
     const Eigen::Affine3d back = readOffset(dir / "offset.xyz");

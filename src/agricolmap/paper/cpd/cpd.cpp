@@ -8,6 +8,7 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/pose_distance.hpp"
 #include "agricolmap/paper/cpd/cpd_accelerate.hpp"
 #include "agricolmap/paper/cpd/cpd_fit.hpp"
 #include "agricolmap/paper/cpd/cpd_level.hpp"
@@ -74,16 +75,12 @@ constexpr std::size_t kChunk = 256;
 /// What one expectation step leaves for the maximisation.
 struct Expectation {
   CpdMoments moments;
-  double weight = 0.0;    ///< of all moving points
-  double square = 0.0;    ///< Σ W·|x − T(y)|² over pairs
-  double residual = 0.0;  ///< Σ W·|x̄ − T(ȳ)|² over moving points
-  std::size_t pairs = 0;
+  double weight = 0.0;  ///< of all moving points
+  double square = 0.0;  ///< Σ W·|x − T(y)|² over pairs
   Expectation& operator+=(const Expectation& other) {
     moments += other.moments;
     weight += other.weight;
     square += other.square;
-    residual += other.residual;
-    pairs += other.pairs;
     return *this;
   }
 };
@@ -102,35 +99,29 @@ double outlierTerm(const CpdClouds& clouds, double sigma, const CpdOptions& opti
 Expectation expectation(const CpdLevel& level, const CpdPose& pose, double sigma, double outlier,
                         double sigma_height) {
   const CpdWidths widths{static_cast<float>(sigma), static_cast<float>(sigma_height)};
-  return parallelSum(
-      level.data.size(), kChunk, Expectation{}, [&](std::size_t begin, std::size_t end) {
-        Expectation part;
-        for (std::size_t i = begin; i < end; ++i) {
-          const map::VegetationPoint& p = level.data[i].point;
-          const Eigen::Vector3d& mean = level.data[i].mean;
-          const Eigen::Vector3d moved = applyPose(pose, p.position, p.height);
-          const CpdSums sums = level.fixed.at(moved.cast<float>(), widths);
-          part.pairs += sums.pairs;
-          part.weight += p.weight;
-          const double found = static_cast<double>(sums.weight);
-          if (!(found > 0.0)) continue;
-          const double w = p.weight * found / (found + outlier);
-          const Eigen::Vector3d target = moved + sums.mean_offset.cast<double>();
-          part.moments.add(w, mean, target);
-          part.square += w * static_cast<double>(sums.square);
-          part.residual += w * (target.head<2>() - pose.plane * mean.head<2>()).squaredNorm();
-        }
-        return part;
-      });
+  return parallelSum(level.data.size(), kChunk, Expectation{},
+                     [&](std::size_t begin, std::size_t end) {
+                       Expectation part;
+                       for (std::size_t i = begin; i < end; ++i) {
+                         const map::VegetationPoint& p = level.data[i].point;
+                         const Eigen::Vector3d& mean = level.data[i].mean;
+                         const Eigen::Vector3d moved = applyPose(pose, p.position, p.height);
+                         const CpdSums sums = level.fixed.at(moved.cast<float>(), widths);
+                         part.weight += p.weight;
+                         const double found = static_cast<double>(sums.weight);
+                         if (!(found > 0.0)) continue;
+                         const double w = p.weight * found / (found + outlier);
+                         const Eigen::Vector3d target = moved + sums.mean_offset.cast<double>();
+                         part.moments.add(w, mean, target);
+                         part.square += w * static_cast<double>(sums.square);
+                       }
+                       return part;
+                     });
 }
 
 /// Largest motion of the moving points between two poses [m].
 double motionBetween(const CpdClouds& clouds, const CpdPose& a, const CpdPose& b) {
-  double motion = 0.0;
-  for (const Eigen::Vector2d& corner : clouds.corners) {
-    motion = std::max(motion, (a.plane * corner - b.plane * corner).norm());
-  }
-  return motion;
+  return poseDistance(clouds.corners, a.plane, b.plane);
 }
 
 CpdPose toCentred(const CpdPose& pose, const CpdClouds& clouds) {
@@ -210,7 +201,8 @@ class Refiner {
     CpdPose image = pose;
     for (int i = 0; i < options_.max_iterations && !still; ++i) {
       Expectation sums = expectation(level, pose, level.sigma, outlier, options_.sigma_height);
-      record(sums, level.sigma);
+      ++result_.iterations;
+      result_.matched_share = sums.weight > 0.0 ? sums.moments.weight / sums.weight : 0.0;
       if (start_weight > 0.0) addStart(level, pose, start_weight, sums.moments);
       const std::optional<CpdPose> fit =
           fitCpdPose(sums.moments, options_.model, scale_axes_, options_.vertical_scale);
@@ -224,8 +216,7 @@ class Refiner {
           mixer.next(toVector(pose, clouds_), toVector(image, clouds_), level.sigma), clouds_);
       still = std::max(step, motionBetween(clouds_, pose, mixed)) < tolerance;
       pose = mixed;
-      result_.motion = motionBetween(clouds_, start_, pose);
-      if (result_.motion > options_.max_motion) {
+      if (motionBetween(clouds_, start_, pose) > options_.max_motion) {
         failed_ = true;
         result_.status = CpdStatus::kRanAway;
         return estimate;
@@ -255,14 +246,6 @@ class Refiner {
     return 0.0;
   }
 
-  void record(const Expectation& sums, double sigma) {
-    ++result_.iterations;
-    result_.pairs += sums.pairs;
-    result_.sigma = sigma;
-    result_.matched_share = sums.weight > 0.0 ? sums.moments.weight / sums.weight : 0.0;
-    result_.rms = sums.moments.weight > 0.0 ? std::sqrt(sums.residual / sums.moments.weight) : 0.0;
-  }
-
   static constexpr std::size_t kMixerMemory = 5;
   /// Before the last level, standing still means moving less than this share of σ.
   static constexpr double kCoarseTolerance = 0.02;
@@ -288,8 +271,6 @@ CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
   result.pose = start;
   if (fixed.size() < kMinPoints || moving.size() < kMinPoints) return result;
   const CpdClouds clouds = makeCpdClouds(fixed, moving, start, options);
-  result.fixed_points = clouds.fixed.size();
-  result.moving_points = clouds.moving.size();
   if (clouds.fixed.size() < kMinPoints || clouds.moving.size() < kMinPoints) return result;
   const CpdPose refined =
       Refiner(clouds, options, scale_axes, result).run(toCentred(start, clouds));

@@ -17,7 +17,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -75,14 +74,8 @@ struct CpdPose {
 struct CpdResult {
   CpdStatus status = CpdStatus::kTooFewPoints;
   CpdPose pose;                ///< refined; the start unless usable()
-  double sigma = 0.0;          ///< of the last iteration [m]
   double matched_share = 0.0;  ///< mean posterior of not being an outlier, of the data
-  double rms = 0.0;            ///< of what still pulls at the matched points [m]
-  double motion = 0.0;         ///< largest motion of a moving point by the refinement [m]
   int iterations = 0;
-  std::size_t fixed_points = 0;   ///< used
-  std::size_t moving_points = 0;  ///< used
-  std::size_t pairs = 0;          ///< kernel evaluations in all iterations
   bool usable() const {
     return status == CpdStatus::kConverged || status == CpdStatus::kIterationLimit;
   }

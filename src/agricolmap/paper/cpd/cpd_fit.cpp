@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "agricolmap/core/scaled_rotation.hpp"
 #include "agricolmap/core/transform.hpp"
 
 namespace agricolmap::paper {
@@ -13,26 +14,6 @@ namespace {
 constexpr double kMinVariance = 1e-4;
 /// Least variance of the heights for a vertical scale [m²].
 constexpr double kMinHeightVariance = 1e-4;
-
-/// Rotation and scales along `axes` with the least Σ|x − R·A·diag(s)·Aᵀ·y|². With y′ = Aᵀy the best
-/// s_k for a rotation is r_k·C_k/D_k, which leaves the maximum of Σ (r_k·C_k)²/D_k over the angle:
-/// a quadratic form of the rotation's first column, so an eigenvector.
-Eigen::Matrix2d fitScaled(const Eigen::Matrix2d& cross, const Eigen::Matrix2d& moving2,
-                          const Eigen::Matrix2d& axes) {
-  const Eigen::Matrix2d c = cross * axes;
-  const Eigen::Vector2d d = (axes.transpose() * moving2 * axes).diagonal();
-  // r_2 = J·r_1 with J a quarter turn, so r_2·C_2 = r_1·(Jᵀ·C_2).
-  const Eigen::Vector2d turned(c(1, 1), -c(0, 1));
-  const Eigen::Matrix2d form =
-      c.col(0) * c.col(0).transpose() / d.x() + turned * turned.transpose() / d.y();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(form);
-  Eigen::Vector2d first = solver.eigenvectors().col(1);
-  if (first.dot(c.col(0)) < 0.0) first = -first;
-  Eigen::Matrix2d rotation;
-  rotation << first.x(), -first.y(), first.y(), first.x();
-  const Eigen::Vector2d scales = (rotation.transpose() * c).diagonal().cwiseQuotient(d);
-  return rotation * scales.asDiagonal() * axes.transpose();
-}
 
 /// Rotation, and one scale if `with_scale` (Umeyama 1991 in two dimensions).
 Eigen::Matrix2d fitSimilarity(const Eigen::Matrix2d& cross, const Eigen::Matrix2d& moving2,
@@ -81,9 +62,13 @@ std::optional<CpdPose> fitCpdPose(const CpdMoments& moments, CpdModel model,
     case CpdModel::kAffine:
       pose.plane.linear() = cross * moving2.inverse();
       break;
-    case CpdModel::kScaled:
-      pose.plane.linear() = fitScaled(cross, moving2, scale_axes);
+    case CpdModel::kScaled: {
+      const Eigen::Matrix2d axes = orthonormalAxes(scale_axes);
+      const auto fit = fitYawScales(cross * axes, axes.transpose() * moving2 * axes, axes);
+      if (!fit) return std::nullopt;
+      pose.plane.linear() = fit->linear(axes);
       break;
+    }
     case CpdModel::kSimilarity:
     case CpdModel::kRigid:
       pose.plane.linear() = fitSimilarity(cross, moving2, model == CpdModel::kSimilarity);

@@ -102,7 +102,6 @@ CpdSums CpdMixture::at(const Eigen::Vector3f& query, const CpdWidths& widths) co
       lanes.z += kernel * dz;
       lanes.square += kernel * square;
     }
-    sums.pairs += end - begin_[line + static_cast<std::size_t>(first)];
   }
   sums.weight = lanes.weight.sum();
   if (sums.weight > 0.0F) {

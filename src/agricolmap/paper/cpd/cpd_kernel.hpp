@@ -18,7 +18,6 @@ struct CpdSums {
   float weight = 0.0F;  ///< S = Σ wₙ·exp(−d²/2σ² − dz²/2σ_z²)
   Eigen::Vector3f mean_offset{0.0F, 0.0F, 0.0F};  ///< Σ(pₙ − q)·…/S [m]
   float square = 0.0F;                            ///< Σ d²·…/S, horizontal [m²]
-  std::size_t pairs = 0;                          ///< points looked at
 };
 
 /// Points in bins of a grid, row by row, so that the neighbours of a query are a few runs of

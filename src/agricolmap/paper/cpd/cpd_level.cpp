@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/pose_distance.hpp"
+#include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::paper {
 namespace {
@@ -49,10 +51,7 @@ double dataMargin(const Points& moving, double border) {
   std::vector<double> margins(moving.size());
   std::transform(moving.begin(), moving.end(), margins.begin(),
                  [](const map::VegetationPoint& p) { return p.margin; });
-  const auto kept = margins.begin() + static_cast<std::ptrdiff_t>(
-                                          (1.0 - kLeast) * static_cast<double>(margins.size()));
-  std::nth_element(margins.begin(), kept, margins.end());
-  return std::min(border, *kept);
+  return std::min(border, quantile(margins, 1.0 - kLeast));
 }
 
 }  // namespace
@@ -62,10 +61,10 @@ CpdClouds makeCpdClouds(const Points& fixed, const Points& moving, const CpdPose
   CpdClouds result;
   const map::Box2 box = boxOf(moving);
   map::Box2 crop;
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector2d corner = box.corner(static_cast<map::Box2::CornerType>(i));
+  result.corners = cornersOf(box);
+  for (Eigen::Vector2d& corner : result.corners) {
     crop.extend(start.plane * corner);
-    result.corners[static_cast<std::size_t>(i)] = corner - box.center();
+    corner -= box.center();
   }
   const double margin = options.max_motion + 3.0 * options.sigma_start;
   crop.min().array() -= margin;

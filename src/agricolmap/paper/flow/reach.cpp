@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "agricolmap/core/transform.hpp"
+#include "agricolmap/core/angles.hpp"
+#include "agricolmap/core/scaled_rotation.hpp"
 
 namespace agricolmap::paper {
 
@@ -12,33 +13,29 @@ Reach::Reach(const SearchSpace& space, const Eigen::Affine2d& warp)
     : space_(space),
       warp_(warp),
       unwarp_(warp.inverse()),
-      yaw_(space.uncertainty.heading_deg * std::numbers::pi / 180.0) {
+      yaw_(radians(space.uncertainty.heading_deg)) {
   // The image is linear in the scales and nearly so in the yaw: corners and centre span it; wide
   // headings need the steps between.
   const int steps = std::max(2, static_cast<int>(std::ceil(2.0 * yaw_ / 0.2)));
-  const double widest = std::exp(logScaleLimit(space_.uncertainty));
+  const double widest = logScaleLimit(space_.uncertainty);
   for (int i = 0; i <= steps; ++i) {
     const double yaw = -yaw_ + 2.0 * yaw_ * i / steps;
-    for (const double scale_x : {1.0 / widest, widest}) {
-      for (const double scale_y : {1.0 / widest, widest}) {
-        const Eigen::Matrix2d m = linear(yaw, scale_x, scale_y);
+    for (const double log_x : {-widest, widest}) {
+      for (const double log_y : {-widest, widest}) {
+        const Eigen::Matrix2d m =
+            YawScales::fromVector({yaw, log_x, log_y}).linear(space_.scale_axes);
         extremes_.push_back({m, m.inverse()});
       }
     }
   }
 }
 
-Eigen::Matrix2d Reach::linear(double yaw, double scale_x, double scale_y) const {
-  return rotation2(yaw) * space_.scale_axes * Eigen::Vector2d(scale_x, scale_y).asDiagonal() *
-         space_.scale_axes.transpose();
-}
-
 Eigen::Matrix2d Reach::randomLinear(Random& random) const {
   const double spread = logScaleLimit(space_.uncertainty);
   const double yaw = random.uniform(-yaw_, yaw_);
-  const double scale_x = std::exp(random.uniform(-spread, spread));
-  const double scale_y = std::exp(random.uniform(-spread, spread));
-  return linear(yaw, scale_x, scale_y);
+  const double log_x = random.uniform(-spread, spread);
+  const double log_y = random.uniform(-spread, spread);
+  return YawScales::fromVector({yaw, log_x, log_y}).linear(space_.scale_axes);
 }
 
 Eigen::Vector2d Reach::randomShift(Random& random) const {

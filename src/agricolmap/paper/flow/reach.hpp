@@ -28,7 +28,6 @@ class Reach {
   map::Box2 backwardBox(const Eigen::Vector2d& p) const;
 
  private:
-  Eigen::Matrix2d linear(double yaw, double scale_x, double scale_y) const;
   Eigen::Matrix2d randomLinear(Random& random) const;
   Eigen::Vector2d randomShift(Random& random) const;
   template <typename Map>

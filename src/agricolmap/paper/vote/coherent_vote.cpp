@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 
+#include "agricolmap/core/angles.hpp"
+#include "agricolmap/core/keep_distinct.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/core/transform.hpp"
+#include "agricolmap/core/pose_distance.hpp"
+#include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::paper {
 
@@ -32,9 +34,10 @@ constexpr double kWidestBins = 2048.0;  ///< per axis, a guard against absurd se
 /// vectorise.
 struct Pairs {
   Eigen::Vector2d pivot;
-  std::vector<float> qx, qy;    ///< moving − pivot
-  std::vector<float> px, py;    ///< fixed − pivot
-  Eigen::Vector2d half_extent;  ///< of q along the axes [m]
+  std::vector<float> qx, qy;               ///< moving − pivot
+  std::vector<float> px, py;               ///< fixed − pivot
+  Eigen::Vector2d half_extent;             ///< of q along the axes [m]
+  std::array<Eigen::Vector2d, 4> corners;  ///< of the moving points' box along the axes [m]
 };
 
 Pairs pairsOf(std::span<const Match> matches, const Eigen::Matrix2d& axes) {
@@ -43,6 +46,8 @@ Pairs pairsOf(std::span<const Match> matches, const Eigen::Matrix2d& axes) {
   for (const Match& match : matches) box.extend(axes.transpose() * match.moving);
   pairs.pivot = axes * box.center();
   pairs.half_extent = 0.5 * box.sizes();
+  pairs.corners = cornersOf(box);
+  for (Eigen::Vector2d& corner : pairs.corners) corner = axes * corner;
   for (const Match& match : matches) {
     const Eigen::Vector2f q = (match.moving - pairs.pivot).cast<float>();
     const Eigen::Vector2f p = (match.fixed - pairs.pivot).cast<float>();
@@ -54,11 +59,6 @@ Pairs pairsOf(std::span<const Match> matches, const Eigen::Matrix2d& axes) {
   return pairs;
 }
 
-struct Hypothesis {
-  double yaw;
-  Eigen::Vector2d scale;
-};
-
 /// −limit…limit in equal steps of at most `step`, odd in number.
 std::vector<double> lattice(double limit, double step) {
   const int half = static_cast<int>(std::ceil(limit / step));
@@ -67,23 +67,18 @@ std::vector<double> lattice(double limit, double step) {
   return values;
 }
 
-std::vector<Hypothesis> hypotheses(const PriorUncertainty& u, const Eigen::Vector2d& half_extent,
-                                   double step) {
+std::vector<YawScales> hypotheses(const PriorUncertainty& u, const Eigen::Vector2d& half_extent,
+                                  double step) {
   const auto stepFor = [&](double arm) { return step / std::max(arm, step); };
-  std::vector<Hypothesis> result;
-  const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0;
-  for (const double yaw : lattice(yaw_limit, stepFor(half_extent.norm()))) {
+  std::vector<YawScales> result;
+  for (const double yaw : lattice(radians(u.heading_deg), stepFor(half_extent.norm()))) {
     for (const double x : lattice(logScaleLimit(u), stepFor(half_extent.x()))) {
       for (const double y : lattice(logScaleLimit(u), stepFor(half_extent.y()))) {
-        result.push_back({yaw, Eigen::Vector2d(std::exp(x), std::exp(y))});
+        result.push_back(YawScales::fromVector({yaw, x, y}));
       }
     }
   }
   return result;
-}
-
-Eigen::Matrix2d linearOf(const Hypothesis& h, const Eigen::Matrix2d& axes) {
-  return rotation2(h.yaw) * axes * h.scale.asDiagonal() * axes.transpose();
 }
 
 /// The fullest 2 × 2 bins of a hypothesis and their middle.
@@ -179,20 +174,6 @@ class ShiftVote {
   int cols_ = 0;
 };
 
-/// Largest distance between where two placements put the corners of the moving matches [m].
-double farthestCorner(const Eigen::Affine2d& a, const Eigen::Affine2d& b, const Pairs& pairs,
-                      const Eigen::Matrix2d& axes) {
-  double farthest = 0.0;
-  for (const double x : {-1.0, 1.0}) {
-    for (const double y : {-1.0, 1.0}) {
-      const Eigen::Vector2d corner =
-          pairs.pivot + axes * Eigen::Vector2d(x, y).cwiseProduct(pairs.half_extent);
-      farthest = std::max(farthest, (a * corner - b * corner).norm());
-    }
-  }
-  return farthest;
-}
-
 std::vector<std::uint32_t> within(std::span<const Match> matches, const Eigen::Affine2d& pose,
                                   double radius) {
   std::vector<std::uint32_t> result;
@@ -216,9 +197,8 @@ VotedPlacement drawIn(std::span<const Match> matches, const Eigen::Affine2d& sta
     chosen.clear();
     weights.clear();
     for (const std::uint32_t i : within(matches, pose, radius)) {
-      const double r = (pose * matches[i].moving - matches[i].fixed).norm() / radius;
       chosen.push_back(matches[i]);
-      weights.push_back((1.0 - r * r) * (1.0 - r * r));
+      weights.push_back(tukeyWeight((pose * matches[i].moving - matches[i].fixed).norm() / radius));
     }
     const auto fit = fitScaledRotation(chosen, weights, axes);
     if (!fit) return {};
@@ -229,11 +209,9 @@ VotedPlacement drawIn(std::span<const Match> matches, const Eigen::Affine2d& sta
   return placement;
 }
 
-double yawLimit(const PriorUncertainty& u) { return u.heading_deg * std::numbers::pi / 180.0; }
-
 /// True inside what the initial guess allows, with a little play for the fit.
 bool allowed(const ScaledRotation& pose, const PriorUncertainty& u) {
-  return std::abs(pose.yaw) <= yawLimit(u) + 0.05 &&
+  return std::abs(pose.yaw) <= radians(u.heading_deg) + 0.05 &&
          pose.scale.array().log().abs().maxCoeff() <= logScaleLimit(u) + 0.05;
 }
 
@@ -242,12 +220,12 @@ VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& 
                              const Eigen::Matrix2d& axes, double unit, const VoteOptions& options) {
   const double bin = options.coarse * unit;
   const Pairs pairs = pairsOf(matches, axes);
-  const std::vector<Hypothesis> all = hypotheses(space.uncertainty, pairs.half_extent, bin);
+  const std::vector<YawScales> all = hypotheses(space.uncertainty, pairs.half_extent, bin);
   // The pivot moves by the translation plus what heading and scales do to its arm from the centre.
   const double arm = (pairs.pivot - space.centre).norm();
   const double reach = space.uncertainty.translation +
                        arm * (std::expm1(logScaleLimit(space.uncertainty)) +
-                              std::min(2.0, yawLimit(space.uncertainty))) +
+                              std::min(2.0, radians(space.uncertainty.heading_deg))) +
                        bin;
   const Eigen::AlignedBox2d window(Eigen::Vector2d::Constant(-reach),
                                    Eigen::Vector2d::Constant(reach));
@@ -257,24 +235,27 @@ VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& 
       all.size(),
       [&](std::size_t i) {
         thread_local ShiftVote::Scratch scratch;
-        peaks[i] = vote.vote(linearOf(all[i], axes), scratch);
+        peaks[i] = vote.vote(all[i].linear(axes), scratch);
         peaks[i].hypothesis = i;
       },
       8);
   std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) {
     return a.votes != b.votes ? a.votes > b.votes : a.hypothesis < b.hypothesis;
   });
-  std::vector<Eigen::Affine2d> starts;
+  std::vector<Eigen::Affine2d> supported;
   for (const Peak& peak : peaks) {
-    if (starts.size() == kCandidates || peak.votes < options.least) break;
+    if (peak.votes < options.least) break;
     Eigen::Affine2d pose;
-    pose.linear() = linearOf(all[peak.hypothesis], axes);
+    pose.linear() = all[peak.hypothesis].linear(axes);
     pose.translation() = pairs.pivot + peak.shift - pose.linear() * pairs.pivot;
-    const bool known = std::any_of(starts.begin(), starts.end(), [&](const Eigen::Affine2d& s) {
-      return farthestCorner(s, pose, pairs, axes) < 3.0 * bin;
-    });
-    if (!known) starts.push_back(pose);
+    supported.push_back(pose);
   }
+  const std::vector<Eigen::Affine2d> starts = keepDistinct(
+      std::move(supported),
+      [&](const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
+        return poseDistance(pairs.corners, a, b) < 3.0 * bin;
+      },
+      kCandidates);
   std::vector<VotedPlacement> drawn(starts.size());
   parallelFor(starts.size(), [&](std::size_t i) {
     drawn[i] = drawIn(matches, starts[i], axes, 2.0 * bin, options.tolerance * unit);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -43,8 +43,8 @@ Flow stripFlow(const Eigen::Affine2d& pose, double outliers, std::uint64_t seed)
 Eigen::Affine2d poseOf(double yaw_deg, double sx, double sy, const Eigen::Matrix2d& axes) {
   const Eigen::Vector2d centre(5.0, 1.1);
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
-  pose.linear() = rotation2(yaw_deg * std::numbers::pi / 180.0) * axes *
-                  Eigen::Vector2d(sx, sy).asDiagonal() * axes.transpose();
+  pose.linear() =
+      rotation2(radians(yaw_deg)) * axes * Eigen::Vector2d(sx, sy).asDiagonal() * axes.transpose();
   pose.translation() = centre + Eigen::Vector2d(3.0, -3.9) - pose.linear() * centre;
   return pose;
 }
@@ -69,7 +69,7 @@ TEST(CoherentVote, KeepsWholeStripUnderPaperErrors) {
       const auto all = static_cast<double>(std::count(flow.right.begin(), flow.right.end(), true));
       EXPECT_GE(kept, 0.9 * all);
       EXPECT_GE(kept, 0.97 * static_cast<double>(best.inliers.size()));
-      EXPECT_NEAR(best.pose.yaw, sign * 11.5 * std::numbers::pi / 180.0, 2e-3);
+      EXPECT_NEAR(best.pose.yaw, sign * radians(11.5), 2e-3);
       EXPECT_NEAR(best.pose.scale.x(), 1.0 + 0.3 * sign, 2e-3);
       EXPECT_NEAR(best.pose.scale.y(), 1.0 - 0.3 * sign, 1e-2);
     }

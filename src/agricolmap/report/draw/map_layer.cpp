@@ -153,6 +153,7 @@ void LayerRow::sample(int y) {
   const auto [begin, end] = inside(start, step);
   const LayerCell* cells = level_.cells.data();
   const int cols = level_.frame.cols;
+  // Not core/bilinear.hpp, with which a row of pixels takes a third longer.
   for (int i = begin; i < end; ++i) {
     const float u = start.x() + static_cast<float>(i) * step.x();
     const float v = start.y() + static_cast<float>(i) * step.y();

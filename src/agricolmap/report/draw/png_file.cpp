@@ -1,85 +1,63 @@
 #include "agricolmap/report/draw/png_file.hpp"
 
+#include <png.h>
 #include <zlib.h>
 
-#include <array>
+#include <bit>
 #include <new>
-#include <string_view>
 
 namespace agricolmap::report {
 namespace {
 
-constexpr std::size_t kChannels = 3;
-constexpr std::uint8_t kSubFilter = 1;
-
-void append32(std::vector<std::uint8_t>& out, std::uint32_t value) {
-  for (const int shift : {24, 16, 8, 0}) {
-    out.push_back(static_cast<std::uint8_t>(value >> shift));
+/// Out of memory is all that can go wrong: libpng jumps back, past C++ objects if there were any.
+void append(png_structp png, png_bytep bytes, std::size_t count) {
+  auto& out = *static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(png));
+  bool full = false;
+  try {
+    out.insert(out.end(), bytes, bytes + count);
+  } catch (const std::bad_alloc&) {
+    full = true;
   }
+  if (full) png_error(png, "out of memory");
 }
 
-void appendChunk(std::vector<std::uint8_t>& out, std::string_view type,
-                 const std::vector<std::uint8_t>& data) {
-  append32(out, static_cast<std::uint32_t>(data.size()));
-  const std::size_t begin = out.size();
-  out.insert(out.end(), type.begin(), type.end());
-  out.insert(out.end(), data.begin(), data.end());
-  append32(out, static_cast<std::uint32_t>(crc32_z(0, out.data() + begin, out.size() - begin)));
-}
-
-/// Rows as differences to the left neighbour, each behind its filter byte (PNG, section 9).
-std::vector<std::uint8_t> filteredRows(const std::uint32_t* pixels, int width, int height,
-                                       std::size_t stride) {
-  std::vector<std::uint8_t> rows((static_cast<std::size_t>(width) * kChannels + 1) *
-                                 static_cast<std::size_t>(height));
-  std::uint8_t* out = rows.data();
+/// False when memory ran out.
+bool writeAll(png_structp png, png_infop info, const std::uint32_t* pixels, int width, int height,
+              std::size_t stride) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's interface
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
+               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE,
+               PNG_FILTER_TYPE_BASE);
+  // Run lengths of differences alone: what else repeats in those of noise is not worth the search.
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  png_set_compression_level(png, 1);
+  png_set_compression_strategy(png, Z_RLE);
+  png_write_info(png, info);
+  constexpr bool kLittle = std::endian::native == std::endian::little;
+  png_set_filler(png, 0, kLittle ? PNG_FILLER_AFTER : PNG_FILLER_BEFORE);
+  if (kLittle) png_set_bgr(png);
   for (int y = 0; y < height; ++y) {
-    const std::uint32_t* row = pixels + static_cast<std::size_t>(y) * stride;
-    *out++ = kSubFilter;
-    std::uint32_t left = 0;
-    for (int x = 0; x < width; ++x) {
-      const std::uint32_t here = row[x];
-      out[0] = static_cast<std::uint8_t>((here >> 16) - (left >> 16));
-      out[1] = static_cast<std::uint8_t>((here >> 8) - (left >> 8));
-      out[2] = static_cast<std::uint8_t>(here - left);
-      out += kChannels;
-      left = here;
-    }
+    png_write_row(png, reinterpret_cast<png_const_bytep>(pixels + stride * y));
   }
-  return rows;
-}
-
-std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
-  z_stream stream{};
-  // Run lengths alone: what else repeats in differences of noise is not worth the search.
-  if (deflateInit2(&stream, 1, Z_DEFLATED, MAX_WBITS, 9, Z_RLE) != Z_OK) throw std::bad_alloc();
-  std::vector<std::uint8_t> out(deflateBound(&stream, bytes.size()));
-  stream.next_in = const_cast<Bytef*>(bytes.data());  // zlib's interface lacks the const
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = out.data();
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int status = deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (status != Z_STREAM_END) throw std::bad_alloc();
-  return out;
+  png_write_end(png, info);
+  return true;
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> encodePng(const std::uint32_t* pixels, int width, int height,
                                     std::size_t stride) {
-  constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-  std::vector<std::uint8_t> png(kSignature.begin(), kSignature.end());
-  std::vector<std::uint8_t> header;
-  append32(header, static_cast<std::uint32_t>(width));
-  append32(header, static_cast<std::uint32_t>(height));
-  // 8 bits, RGB, deflate, adaptive filters, not interlaced.
-  header.insert(header.end(), {8, 2, 0, 0, 0});
-  appendChunk(png, "IHDR", header);
-  appendChunk(png, "IDAT", deflated(filteredRows(pixels, width, height, stride)));
-  appendChunk(png, "IEND", {});
-  return png;
+  std::vector<std::uint8_t> out;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  bool written = false;
+  if (info != nullptr) {
+    png_set_write_fn(png, &out, append, nullptr);
+    written = writeAll(png, info, pixels, width, height, stride);
+  }
+  png_destroy_write_struct(&png, &info);
+  if (!written) throw std::bad_alloc();
+  return out;
 }
 
 }  // namespace agricolmap::report

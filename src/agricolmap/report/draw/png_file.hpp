@@ -1,5 +1,5 @@
-// Writing PNG files fast. cairo's own writer compresses at zlib's level 6 and takes four times as
-// long for files that are hardly smaller: pictures of fields are mostly noise.
+// PNG files written fast, by libpng. cairo's own writer has it compress at zlib's level 6 and takes
+// four times as long for files that are hardly smaller: pictures of fields are mostly noise.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Text from outside (file names) as valid UTF-8, which both JSON and cairo insist on.
+// Text from outside (file names) as valid UTF-8: cairo draws nothing any more after other bytes.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace agricolmap::report {
 
-/// `text` with every byte that is no part of well-formed UTF-8 replaced by U+FFFD.
+/// `text` with U+FFFD for what is not well-formed UTF-8.
 std::string validUtf8(std::string_view text);
 
 }  // namespace agricolmap::report

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/core/robust.hpp"
 #include "agricolmap/report/draw/outline.hpp"
 #include "agricolmap/report/draw/page.hpp"
 
@@ -127,9 +128,7 @@ void CloudPhoto::survey() {
   for (const int count : counts) {
     if (count > 0) filled.push_back(count);
   }
-  const auto middle = filled.begin() + static_cast<std::ptrdiff_t>(filled.size() / 2);
-  std::nth_element(filled.begin(), middle, filled.end());
-  const double least = kSparse * *middle;
+  const double least = kSparse * median(filled);
   std::vector<Eigen::Vector2d> covered;
   double points = 0.0;
   for (int row = 0; row < frame.rows; ++row) {

@@ -221,7 +221,7 @@ TEST(Utf8, ReplacesWhatIsNotWellFormed) {
   EXPECT_EQ(validUtf8("a\xFFz"), "a" + sign + "z");
   EXPECT_EQ(validUtf8("\xC0\x80"), sign + sign);             // overlong
   EXPECT_EQ(validUtf8("\xED\xA0\x80"), sign + sign + sign);  // surrogate
-  EXPECT_EQ(validUtf8("\xE6\x97"), sign + sign);             // cut short
+  EXPECT_EQ(validUtf8("\xE6\x97"), sign);                    // cut short
 }
 
 }  // namespace

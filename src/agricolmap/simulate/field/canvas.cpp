@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap::simulate {
@@ -74,17 +75,7 @@ void blurRaster(Raster<float>& raster, double sigma) {
 }
 
 float sampleRaster(const Raster<float>& raster, float col, float row) {
-  const float c = std::clamp(col, 0.0F, static_cast<float>(raster.cols() - 1));
-  const float r = std::clamp(row, 0.0F, static_cast<float>(raster.rows() - 1));
-  const int c0 = std::min(static_cast<int>(c), std::max(0, raster.cols() - 2));
-  const int r0 = std::min(static_cast<int>(r), std::max(0, raster.rows() - 2));
-  const int c1 = std::min(c0 + 1, raster.cols() - 1);
-  const int r1 = std::min(r0 + 1, raster.rows() - 1);
-  const float fc = c - static_cast<float>(c0);
-  const float fr = r - static_cast<float>(r0);
-  const float low = raster(r0, c0) * (1.0F - fc) + raster(r0, c1) * fc;
-  const float high = raster(r1, c0) * (1.0F - fc) + raster(r1, c1) * fc;
-  return low * (1.0F - fr) + high * fr;
+  return cellsClamped<float>(raster.rows(), raster.cols(), col, row).mean(raster);
 }
 
 }  // namespace agricolmap::simulate

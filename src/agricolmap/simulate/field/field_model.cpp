@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/random.hpp"
 
 namespace agricolmap::simulate {
@@ -86,10 +87,9 @@ float leafDepthOf(Species species) {
 
 FieldModel::FieldModel(Crop crop, const FieldOptions& options, std::uint64_t seed)
     : species_(speciesOf(crop)), options_(options), seed_(seed) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   Random random = Random::stream(seed, 1);
   const double drawn = random.uniform(0.0, 2.0 * std::numbers::pi);
-  heading_ = options.random_row_heading ? drawn : options.row_heading_deg * kDegree;
+  heading_ = options.random_row_heading ? drawn : radians(options.row_heading_deg);
   track_offset_ = random.uniform() * options.tramline_spacing;
   const double downhill = random.uniform(0.0, 2.0 * std::numbers::pi);
   slope_ = options.slope * Eigen::Vector2d(std::cos(downhill), std::sin(downhill));

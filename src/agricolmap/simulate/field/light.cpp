@@ -2,25 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap::simulate {
 
 Eigen::Vector3d sunDirection(double solar_hour) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  const double latitude = 46.0 * kDegree;
-  const double declination = 22.0 * kDegree;
-  const double hour_angle = (solar_hour - 12.0) * 15.0 * kDegree;
+  const double latitude = radians(46.0);
+  const double declination = radians(22.0);
+  const double hour_angle = radians((solar_hour - 12.0) * 15.0);
   const double east = -std::cos(declination) * std::sin(hour_angle);
   const double north = std::cos(latitude) * std::sin(declination) -
                        std::sin(latitude) * std::cos(declination) * std::cos(hour_angle);
   const double up = std::sin(latitude) * std::sin(declination) +
                     std::cos(latitude) * std::cos(declination) * std::cos(hour_angle);
   // Never below 8 degrees: long shadows, but still a day.
-  Eigen::Vector3d sun(east, north, std::max(up, std::sin(8.0 * kDegree)));
+  Eigen::Vector3d sun(east, north, std::max(up, std::sin(radians(8.0))));
   return sun.normalized();
 }
 

@@ -6,14 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "agricolmap/core/random.hpp"
+
 namespace agricolmap::simulate {
 
-/// Mixes two numbers into 64 well-spread bits (the finaliser of SplitMix64).
+/// Mixes two numbers into 64 well-spread bits.
 inline std::uint64_t hashBits(std::uint64_t seed, std::uint64_t key) {
-  std::uint64_t z = seed + 0x9E3779B97F4A7C15ULL * (key + 1);
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-  return z ^ (z >> 31);
+  return mixBits(seed + Random::kStep * (key + 1));
 }
 
 inline std::uint64_t hashBits(std::uint64_t seed, std::int64_t i, std::int64_t j) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/simulate/assemble.hpp"
@@ -29,8 +30,7 @@ StripPlace placeOnMosaic(const OrthoField& field, const OrthoScene& scene,
         "{}: {:.1f} x {:.1f} m of it are too small for a strip of {} x {} m at {:.0f} degrees; "
         "shorten ugv.length and ugv.width, change ugv.heading_deg, or take more of the mosaic: "
         "field.width and field.height or --window",
-        field.name, size.x(), size.y(), options.ugv.length, options.ugv.width,
-        heading * 57.29577951308232));
+        field.name, size.x(), size.y(), options.ugv.length, options.ugv.width, degrees(heading)));
   }
   for (std::uint64_t attempt = 0; attempt < 500; ++attempt) {
     const StripPlace strip =

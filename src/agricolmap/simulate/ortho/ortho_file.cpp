@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/raster/raster_place.hpp"
+#include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::simulate {
 
@@ -28,7 +30,7 @@ constexpr double kSameGsd = 0.01;         // relative
 constexpr double kMaxFieldPixels = 64e6;  // simulating takes about 60 bytes for each
 constexpr int kThumbnail = 2000;          // longer side [px]
 constexpr double kFull = 0.98;            // share of data that is as good as all
-constexpr double kGreen = 0.05;           // chromatic Excess Green of plants
+constexpr float kGreen = 0.05F;           // chromatic Excess Green of plants
 constexpr std::uint64_t kAttempts = 400;
 constexpr double kFarFromMedian = 100.0;  // heights that are not believed [m]
 
@@ -90,16 +92,7 @@ void resample(const GridFrame& grid, const Eigen::Affine2d& world, int rows, int
             put(cell, std::numeric_limits<double>::quiet_NaN());
             continue;
           }
-          const double x = std::clamp(at.x(), 0.0, std::max(0.0, cols - 1.001));
-          const double y = std::clamp(at.y(), 0.0, std::max(0.0, rows - 1.001));
-          const int left = static_cast<int>(x);
-          const int top = static_cast<int>(y);
-          const int right = std::min(left + 1, cols - 1);
-          const int bottom = std::min(top + 1, rows - 1);
-          const double fx = x - left;
-          const double fy = y - top;
-          put(cell, ((1.0 - fx) * value(top, left) + fx * value(top, right)) * (1.0 - fy) +
-                        ((1.0 - fx) * value(bottom, left) + fx * value(bottom, right)) * fy);
+          put(cell, cellsClamped<double>(rows, cols, at.x(), at.y()).mean(value));
         }
       },
       16);
@@ -235,9 +228,7 @@ std::vector<std::size_t> plantPixels(const io::RasterImage& image) {
   for (std::size_t i = 0; i < image.valid.size(); ++i) {
     if (image.valid[i] == 0) continue;
     all.push_back(i);
-    const Rgb rgb = image.colour[i];
-    const int sum = rgb.r + rgb.g + rgb.b;
-    if (3 * rgb.g - sum > kGreen * sum) plants.push_back(i);
+    if (map::excessGreen(image.colour[i], map::ExgKind::kChromatic) > kGreen) plants.push_back(i);
   }
   return plants.empty() ? all : plants;
 }

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/raster/raster_test_support.hpp"
 #include "agricolmap/io/test_support.hpp"
 #include "agricolmap/simulate/field/noise.hpp"
@@ -17,8 +17,6 @@ using test::expectError;
 using test::Sheet;
 using test::TempDir;
 using test::writeSheet;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// 1.2 m × 0.9 m of 2 cm pixels, each coloured by its column and row.
 Sheet mosaic() {
@@ -249,11 +247,11 @@ OrthoField rowField(double heading, float gaps) {
 }
 
 TEST(FindRowHeading, FindsRowsAtAnyHeading) {
-  for (const double degrees : {-89.0, -47.3, -2.0, 0.0, 13.0, 45.0, 88.5}) {
-    const double found = findRowHeading(rowField(degrees * kDegree, 0.0F)) / kDegree;
-    EXPECT_NEAR(std::remainder(found - degrees, 180.0), 0.0, 0.3) << degrees;
+  for (const double heading : {-89.0, -47.3, -2.0, 0.0, 13.0, 45.0, 88.5}) {
+    const double found = degrees(findRowHeading(rowField(radians(heading), 0.0F)));
+    EXPECT_NEAR(std::remainder(found - heading, 180.0), 0.0, 0.3) << heading;
   }
-  OrthoField field = rowField(30.0 * kDegree, -0.5F);
+  OrthoField field = rowField(radians(30.0), -0.5F);
   field.valid = Raster<std::uint8_t>(400, 600, 1);
   for (int r = 0; r < 400; ++r) {
     for (int c = 0; c < 250; ++c) {
@@ -261,7 +259,7 @@ TEST(FindRowHeading, FindsRowsAtAnyHeading) {
       field.colour(r, c) = Rgb{};
     }
   }
-  EXPECT_NEAR(findRowHeading(field) / kDegree, 30.0, 0.4);
+  EXPECT_NEAR(degrees(findRowHeading(field)), 30.0, 0.4);
 }
 
 TEST(FindRowHeading, SaysWhenNoRowsStandOut) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -83,7 +84,7 @@ OrthoScene::OrthoScene(const OrthoField& field, const SimulationOptions& options
 void OrthoScene::makeUpHeights() {
   FieldOptions soil = options_.field;
   soil.random_row_heading = false;
-  soil.row_heading_deg = field_->row_heading * 57.29577951308232;
+  soil.row_heading_deg = degrees(field_->row_heading);
   soil.ridge = 0.0;  // where the real rows lie is not known to the simulated soil
   soil.tramline_spacing = 0.0;
   soil.width = std::clamp(width(), 2.0, 200.0);

@@ -8,20 +8,22 @@
 #include <numbers>
 #include <vector>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/robust.hpp"
+#include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/simulate/field/canvas.hpp"
 
 namespace agricolmap::simulate {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kCell = 0.03;       // [m]
 constexpr double kFine = 0.04;       // smoothing within a row, deviation [m]
 constexpr double kCoarse = 0.40;     // what is coarser is not rows, deviation [m]
 constexpr double kMaxRadius = 12.0;  // [m]
-constexpr double kCoarseStep = 0.5 * kDegree;
-constexpr double kFineStep = 0.05 * kDegree;
+constexpr double kCoarseStep = radians(0.5);
+constexpr double kFineStep = radians(0.05);
 constexpr double kLeastContrast = 4.0;  // of the best direction over the median one
 
 /// Greenness of a cell and where it lies about the middle [cells].
@@ -43,9 +45,7 @@ void averageGreen(const OrthoField& field, int block, Raster<float>& green, Rast
       for (int r = row * block; r < (row + 1) * block; ++r) {
         for (int c = col * block; c < (col + 1) * block; ++c) {
           if (!field.valid.empty() && field.valid(r, c) == 0) continue;
-          const Rgb rgb = field.colour(r, c);
-          const auto total = static_cast<float>(rgb.r + rgb.g + rgb.b);
-          sum += total > 0.0F ? 3.0F * static_cast<float>(rgb.g) / total - 1.0F : 0.0F;
+          sum += map::excessGreen(field.colour(r, c), map::ExgKind::kChromatic);
           ++count;
         }
       }
@@ -147,8 +147,7 @@ double findRowHeading(const OrthoField& field) {
   const auto best = std::max_element(shares.begin(), shares.end());
   const double peak = *best;
   const double coarse = -quarter + kCoarseStep * static_cast<double>(best - shares.begin());
-  std::nth_element(shares.begin(), shares.begin() + 180, shares.end());
-  if (!(peak > kLeastContrast * shares[180])) {
+  if (!(peak > kLeastContrast * median(shares))) {
     throw InputError(fmt::format(
         "{}: no direction of plant rows stands out; give it with --row_heading DEGREES "
         "(counter-clockwise from east), or look elsewhere with --window or another --seed",
