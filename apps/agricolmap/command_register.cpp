@@ -4,11 +4,11 @@
 
 #include <iostream>
 #include <memory>
-#include <numbers>
 
 #include "agricolmap/config/json.hpp"
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
@@ -99,13 +99,12 @@ void printSummary(const pipeline::Registration& result, const std::string& direc
   fmt::print("{}\n", toString(result.verdict.status));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
   if (result.transform) {
-    constexpr double kDegrees = 180.0 / std::numbers::pi;
     const pipeline::Transform& transform = *result.transform;
     fmt::print(
         "relative to the initial guess: shift {:.3f} {:.3f} {:.3f} m, heading {:.3f} deg, scales "
         "{:.4f} {:.4f}\n",
-        transform.shift.x(), transform.shift.y(), transform.shift.z(),
-        transform.parts.yaw * kDegrees, transform.parts.scale_x, transform.parts.scale_y);
+        transform.shift.x(), transform.shift.y(), transform.shift.z(), degrees(transform.parts.yaw),
+        transform.parts.scale_x, transform.parts.scale_y);
   }
   fmt::print("results in {}\n", directory);
 }

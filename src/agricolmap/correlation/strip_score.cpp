@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "agricolmap/core/pose_distance.hpp"
+
 namespace agricolmap::correlation {
 namespace {
 
@@ -101,11 +103,7 @@ ScorePeaks StripScore::peaks(const Eigen::Affine2d& pose, const Eigen::Vector2d&
 }
 
 double StripScore::distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const {
-  double largest = 0.0;
-  for (const Eigen::Vector2d& corner : strip_.corners()) {
-    largest = std::max(largest, (a * corner - b * corner).norm());
-  }
-  return largest;
+  return poseDistance(strip_.corners(), a, b);
 }
 
 Raster<float> StripScore::around(const Template& piece, const Eigen::Vector2d& at,

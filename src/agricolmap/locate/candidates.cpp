@@ -3,23 +3,27 @@
 #include <algorithm>
 #include <array>
 
+#include "agricolmap/core/keep_distinct.hpp"
+
 namespace agricolmap::locate {
 namespace {
 
-/// The strip's corners where a candidate puts them [m].
-using Corners = std::array<Eigen::Vector2d, 4>;
+/// A candidate with where it puts the strip's corners [m].
+struct Laid {
+  Candidate candidate;
+  std::array<Eigen::Vector2d, 4> corners;
+};
 
-Corners cornersOf(const Candidate& candidate, const map::StripFrame& strip,
-                  const SearchSpace& space) {
+Laid laid(const Candidate& candidate, const map::StripFrame& strip, const SearchSpace& space) {
+  Laid result{candidate, strip.corners()};
   const Eigen::Affine2d pose = poseOf(candidate, space);
-  Corners corners = strip.corners();
-  for (Eigen::Vector2d& corner : corners) corner = pose * corner;
-  return corners;
+  for (Eigen::Vector2d& corner : result.corners) corner = pose * corner;
+  return result;
 }
 
-bool near(const Corners& a, const Corners& b, double separation) {
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if ((a[i] - b[i]).squaredNorm() >= separation * separation) return false;
+bool near(const Laid& a, const Laid& b, double separation) {
+  for (std::size_t i = 0; i < a.corners.size(); ++i) {
+    if ((a.corners[i] - b.corners[i]).squaredNorm() >= separation * separation) return false;
   }
   return true;
 }
@@ -30,19 +34,16 @@ std::vector<Candidate> distinctCandidates(std::vector<Candidate> all, int most, 
                                           const map::StripFrame& strip, const SearchSpace& space) {
   std::stable_sort(all.begin(), all.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  std::vector<Candidate> kept;
-  std::vector<Corners> corners;
-  for (const Candidate& candidate : all) {
-    if (static_cast<int>(kept.size()) >= most) break;
-    const Corners here = cornersOf(candidate, strip, space);
-    const bool is_new = std::none_of(corners.begin(), corners.end(), [&](const Corners& other) {
-      return near(here, other, separation);
-    });
-    if (!is_new) continue;
-    kept.push_back(candidate);
-    corners.push_back(here);
-  }
-  return kept;
+  std::vector<Laid> sorted;
+  sorted.reserve(all.size());
+  for (const Candidate& candidate : all) sorted.push_back(laid(candidate, strip, space));
+  const std::vector<Laid> kept = keepDistinct(
+      std::move(sorted), [&](const Laid& a, const Laid& b) { return near(a, b, separation); },
+      static_cast<std::size_t>(most));
+  std::vector<Candidate> distinct;
+  distinct.reserve(kept.size());
+  for (const Laid& one : kept) distinct.push_back(one.candidate);
+  return distinct;
 }
 
 }  // namespace agricolmap::locate

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
+#include "agricolmap/core/keep_distinct.hpp"
+#include "agricolmap/core/pose_distance.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
 #include "agricolmap/map/warp.hpp"
@@ -71,7 +73,7 @@ std::vector<Eigen::Affine2d> warpsOver(const SearchSpace& space,
     for (const double x : scales) {
       for (const double y : scales) {
         Eigen::Affine2d warp = Eigen::Affine2d::Identity();
-        warp.linear() = rotation2(heading * std::numbers::pi / 180.0) * axes *
+        warp.linear() = rotation2(radians(heading)) * axes *
                         Eigen::Vector2d(std::exp(x), std::exp(y)).asDiagonal() * axes.transpose();
         warp.translation() = space.centre - warp.linear() * space.centre;
         warps.push_back(warp);
@@ -201,24 +203,14 @@ class FlowSearch {
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
       return a.placement.score > b.placement.score;
     });
-    const map::Box2 box = boxOf(moving_.frame);
-    std::vector<Found> result;
-    for (Found& candidate : found) {
-      if (result.size() == static_cast<std::size_t>(options_.vote.placements)) break;
-      const bool known = std::any_of(result.begin(), result.end(), [&](const Found& better) {
-        double farthest = 0.0;
-        for (const auto which : {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft,
-                                 map::Box2::TopRight}) {
-          const Eigen::Vector2d corner = box.corner(which);
-          farthest = std::max(farthest, (candidate.pose.fixed_from_moving * corner -
-                                         better.pose.fixed_from_moving * corner)
-                                            .norm());
-        }
-        return farthest < kSame;
-      });
-      if (!known) result.push_back(std::move(candidate));
-    }
-    return result;
+    const auto corners = cornersOf(boxOf(moving_.frame));
+    return keepDistinct(
+        std::move(found),
+        [&](const Found& better, const Found& one) {
+          return poseDistance(corners, one.pose.fixed_from_moving, better.pose.fixed_from_moving) <
+                 kSame;
+        },
+        static_cast<std::size_t>(options_.vote.placements));
   }
 
   const map::GridMap& moving_;

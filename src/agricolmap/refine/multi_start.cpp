@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "agricolmap/core/keep_distinct.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/refine/basins.hpp"
 
@@ -52,13 +53,10 @@ RankedPoses refineStarts(const PairSignals& signals, std::span<const Eigen::Affi
   });
   RankedPoses ranked;
   ranked.held = poses.size();
-  for (const RefinedPose& pose : poses) {
-    const bool is_new =
-        std::none_of(ranked.distinct.begin(), ranked.distinct.end(), [&](const RefinedPose& other) {
-          return score.distance(pose.pose, other.pose) <= exclusion;
-        });
-    if (is_new) ranked.distinct.push_back(pose);
-  }
+  ranked.distinct =
+      keepDistinct(std::move(poses), [&](const RefinedPose& better, const RefinedPose& one) {
+        return score.distance(one.pose, better.pose) <= exclusion;
+      });
   return ranked;
 }
 

@@ -5,8 +5,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/draw/utf8.hpp"
@@ -15,8 +15,6 @@ namespace agricolmap::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// Null stands for numbers that JSON lacks.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -52,7 +50,7 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::G
   const Box3 box = boundingBox(cloud);
   json["box_min_m"] = vectorJson((cloud.origin + box.min.cast<double>()).eval());
   json["box_max_m"] = vectorJson((cloud.origin + box.max.cast<double>()).eval());
-  json["ground"] = {{"tilt_deg", number(levelling.tilt * kDegPerRad)},
+  json["ground"] = {{"tilt_deg", number(degrees(levelling.tilt))},
                     {"roughness_m", number(levelling.roughness)},
                     {"cells", levelling.cells},
                     {"under_canopy", levelling.under_canopy}};
@@ -74,9 +72,9 @@ Json transformJson(const Cloud& fixed, const Cloud& moving,
                    {"moving_origin_m", vectorJson(moving.origin)}};
   const HorizontalParts& parts = registration.transform->parts;
   const Eigen::Vector2d& tilt = registration.transform->tilt;
-  json["parts"] = {{"yaw_deg", number(parts.yaw * kDegPerRad)},
-                   {"tilt_x_deg", number(tilt.x() * kDegPerRad)},
-                   {"tilt_y_deg", number(tilt.y() * kDegPerRad)},
+  json["parts"] = {{"yaw_deg", number(degrees(parts.yaw))},
+                   {"tilt_x_deg", number(degrees(tilt.x()))},
+                   {"tilt_y_deg", number(degrees(tilt.y()))},
                    {"scale_x", number(parts.scale_x)},
                    {"scale_y", number(parts.scale_y)},
                    {"scale_z", number(registration.transform->vertical_scale)},

@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/report/test_registration.hpp"
 
@@ -58,7 +59,7 @@ TEST(RegistrationJson, AcceptedHasEverything) {
        {"yaw_deg", "tilt_x_deg", "tilt_y_deg", "scale_x", "scale_y", "scale_z", "shear"}) {
     EXPECT_TRUE(json["transform"]["parts"][key].is_number()) << key;
   }
-  EXPECT_NEAR(json["transform"]["parts"]["yaw_deg"], 0.06 * 57.29577951308232, 1e-9);
+  EXPECT_NEAR(json["transform"]["parts"]["yaw_deg"], degrees(0.06), 1e-9);
   EXPECT_EQ(json["transform"]["parts"]["shift_m"], (Json{0.9, -0.6, 0.12}));
   EXPECT_EQ(json["counts"]["inliers"], 200);
   EXPECT_EQ(json["counts"]["matches"], 400);

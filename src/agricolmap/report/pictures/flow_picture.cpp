@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/draw/page.hpp"
 #include "agricolmap/report/pictures/picture_kinds.hpp"
@@ -135,7 +136,7 @@ void drawSidebar(PictureCanvas& canvas, const Scene& scene, int x, int top) {
     say("   x, y", fmt::format("{:+.3f}, {:+.3f} m", result.transform->shift.x(),
                                result.transform->shift.y()));
     say("   up", fmt::format("{:+.3f} m", result.transform->shift.z()));
-    say("heading", fmt::format("{:+.2f}°", result.transform->parts.yaw * 57.29577951308232));
+    say("heading", fmt::format("{:+.2f}°", degrees(result.transform->parts.yaw)));
     say("scale x, y", fmt::format("{:.3f}, {:.3f}", result.transform->parts.scale_x,
                                   result.transform->parts.scale_y));
     y += 10.0;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "agricolmap/core/angles.hpp"
 #include "agricolmap/map/vegetation.hpp"
 #include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/draw/outline.hpp"
@@ -184,8 +184,7 @@ std::string describeMove(const pipeline::Registration& registration) {
   return fmt::format(
       "shift {:.2f} m (x {:+.3f}, y {:+.3f}), heading {:+.2f}°, scales x {:.3f}, y {:.3f}",
       registration.transform->shift.head<2>().norm(), registration.transform->shift.x(),
-      registration.transform->shift.y(), parts.yaw * 180.0 / std::numbers::pi, parts.scale_x,
-      parts.scale_y);
+      registration.transform->shift.y(), degrees(parts.yaw), parts.scale_x, parts.scale_y);
 }
 
 }  // namespace agricolmap::report
