@@ -30,7 +30,7 @@ struct CorrelationOptions {
   double separation = 0.3;   ///< placements whose corners differ by less are one [m]
   correlation::MatchedFilterOptions filter;
 };
-void describe(OptionTable& table, CorrelationOptions& options);
+void listOptions(OptionTable& table, CorrelationOptions& options);
 
 /// What a search was, for the report.
 struct SearchReport {

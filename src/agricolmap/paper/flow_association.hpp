@@ -28,7 +28,7 @@ struct FlowAssociationOptions {
   bool rematch = true;
   int seed = 1;  ///< of the random search
 };
-void describe(OptionTable& table, FlowAssociationOptions& options);
+void listOptions(OptionTable& table, FlowAssociationOptions& options);
 
 /// Matches, and those of them that cohere.
 struct MatchCount {

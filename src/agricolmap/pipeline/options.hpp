@@ -45,7 +45,7 @@ struct RegistrationOptions {
   verdict::UncertaintyOptions uncertainty;
   verdict::VerdictOptions verdict;
 };
-void describe(OptionTable& table, RegistrationOptions& options);
+void listOptions(OptionTable& table, RegistrationOptions& options);
 
 /// The options as a registration takes them: with what some of them say about others. Throws
 /// UsageError for values outside their limits.

@@ -62,7 +62,7 @@ Refined refineByPoints(const refine::PairSignals& signals, const Eigen::Affine2d
   for (const auto& [plants, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
     if (plants->points.empty()) {
       return failed(fmt::format("vegetation cannot be told from soil in the {} map: {}", name,
-                                describe(plants->threshold.status)));
+                                toString(plants->threshold.status)));
     }
   }
   // Heights start where the maps agree on the ground; the heights' own stage has the last word.
@@ -77,7 +77,7 @@ Refined refineByPoints(const refine::PairSignals& signals, const Eigen::Affine2d
   refined.cpd = CpdReport{fixed.points.size(), moving.points.size(),
                           static_cast<std::size_t>(result.iterations), result.matched_share};
   if (!result.usable()) {
-    refined.failure = fmt::format("the point refinement failed: {}", describe(result.status));
+    refined.failure = fmt::format("the point refinement failed: {}", toString(result.status));
     return refined;
   }
   refined.best = {.pose = result.pose.plane,

@@ -11,7 +11,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, FlowOptions& options) {
+void listOptions(OptionTable& table, FlowOptions& options) {
   table.integer("seed_spacing", options.seed_spacing, 1, 50, "cells", "between seeds");
   table.integer("levels", options.levels, 1, 7, "", "resolutions, each half the one before");
   table.integer("iterations", options.iterations, 1, 100, "",

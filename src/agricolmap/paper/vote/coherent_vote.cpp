@@ -14,7 +14,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, VoteOptions& options) {
+void listOptions(OptionTable& table, VoteOptions& options) {
   table.number("step", options.step, 0.1, 100.0, "cells", "t_f in the paper: step of the vote");
   table.number("coarse", options.coarse, 1.0, 100.0, "t_f",
                "step of the search over heading and scales");
