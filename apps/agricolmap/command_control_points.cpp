@@ -27,7 +27,7 @@ void writeResults(const io::StagedOutput& output,
                   const ControlPointsArguments& arguments) {
   io::writeMatrix(output.path("truth.txt"), estimate.fixed_from_moving,
                   fmt::format("from {} control pairs, model {}, moving file -> fixed file",
-                              estimate.control.count, name(estimate.model)));
+                              estimate.control.count, toString(estimate.model)));
   const auto json = control_points::controlPointsJson(pairs, estimate, arguments.pairs);
   io::writeText(output.path("control_points.json"),
                 json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');

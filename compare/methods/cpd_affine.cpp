@@ -25,11 +25,11 @@ class CpdAffine : public Method {
       return paper::refineByCpd(points.fixed, points.moving, {}, options_, maps.space.scale_axes);
     });
     if (!result.usable()) {
-      outcome.why = fmt::format("no registration: {}", describe(result.status));
+      outcome.why = fmt::format("no registration: {}", toString(result.status));
       return;
     }
     outcome.accepted = result.status == paper::CpdStatus::kConverged;
-    if (!outcome.accepted) outcome.why = describe(result.status);
+    if (!outcome.accepted) outcome.why = toString(result.status);
     setPlanePose(maps, input, result.pose.plane, outcome);
   }
 

@@ -29,7 +29,7 @@ std::vector<map::VegetationPoint> pointsOf(const map::GridMap& map, std::size_t 
   if (vegetation.points.size() < kLeastPoints) {
     throw InputError(
         fmt::format("vegetation cannot be told from soil in the {} map: {} ({} points)", which,
-                    describe(vegetation.threshold.status), vegetation.points.size()));
+                    toString(vegetation.threshold.status), vegetation.points.size()));
   }
   return map::thinToAtMost(vegetation.points, most);
 }

@@ -31,15 +31,15 @@ struct AllOptions {
   GridLike grid;
   int count = 3;
 };
-void describe(OptionTable& table, LeafOptions& o) {
+void listOptions(OptionTable& table, LeafOptions& o) {
   table.number("rate", o.rate, 0.0, 1.0, "1/s", "how often; 'now: or # never'");
 }
-void describe(OptionTable& table, GridLike& o) {
+void listOptions(OptionTable& table, GridLike& o) {
   table.number("cell", o.cell, 0.005, 1.0, "m", "side of a cell");
   table.group("leaf", o.leaf);
   table.choice("exg", o.exg, {"plain", "chromatic"}, "plain | chromatic\nindex");
 }
-void describe(OptionTable& table, AllOptions& o) {
+void listOptions(OptionTable& table, AllOptions& o) {
   table.flag("fast", o.fast, "whether to hurry");
   table.group("grid", o.grid);
   table.integer("count", o.count, 1, 5, "", "how many");

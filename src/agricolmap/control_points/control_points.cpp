@@ -203,7 +203,7 @@ void warn(std::span<const ControlPair> pairs, ControlEstimate& estimate) {
 
 }  // namespace
 
-std::string_view name(ControlModel model) {
+std::string_view toString(ControlModel model) {
   return model == ControlModel::kScales ? "scales" : "affine";
 }
 
@@ -215,7 +215,7 @@ ControlEstimate estimateFromPairs(std::span<const ControlPair> pairs, const Cont
   const std::size_t needed = neededPairs(options.model);
   if (problem.size() < needed) {
     throw InputError(fmt::format("{}: {} control pairs; the model '{}' needs {} at least", source,
-                                 problem.size(), name(options.model), needed));
+                                 problem.size(), toString(options.model), needed));
   }
   std::vector<double> weights(problem.size(), 1.0);
   requireSpread(problem, weights, options.model, source, "the control pairs");

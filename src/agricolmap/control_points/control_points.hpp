@@ -30,7 +30,7 @@ enum class ControlModel {
   kScales,  ///< rotation, a scale along the moving file's x and y (1 along z), shift: Eq. 3
   kAffine,  ///< any affine
 };
-std::string_view name(ControlModel model);
+std::string_view toString(ControlModel model);
 
 struct ControlOptions {
   ControlModel model = ControlModel::kScales;

@@ -98,7 +98,7 @@ Json controlPointsJson(std::span<const ControlPair> pairs, const ControlEstimate
   json["format"] = "agricolmap-control-points";
   json["format_version"] = 1;
   json["source"] = source;
-  json["model"] = name(estimate.model);
+  json["model"] = toString(estimate.model);
   Json matrix = Json::array();
   for (Eigen::Index row = 0; row < 4; ++row) {
     const Eigen::RowVector4d r = estimate.fixed_from_moving.matrix().row(row);

@@ -22,10 +22,10 @@ struct OuterOptions {
   bool on = false;
   Colour colour = Colour::kGreen;
 };
-void describe(OptionTable& table, InnerOptions& o) {
+void listOptions(OptionTable& table, InnerOptions& o) {
   table.number("size", o.size, 0.0, 10.0, "m", "how large");
 }
-void describe(OptionTable& table, OuterOptions& o) {
+void listOptions(OptionTable& table, OuterOptions& o) {
   table.group("inner", o.inner);
   table.integer("count", o.count, 1, 5, "", "how many");
   table.flag("on", o.on, "whether");

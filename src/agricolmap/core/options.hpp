@@ -1,4 +1,4 @@
-// Options defined once: a struct with defaults and a `describe` that lists its fields with name,
+// Options defined once: a struct with defaults and a `listOptions` that lists its fields with name,
 // unit, limits and help. Command line, YAML, JSON, checks and docs all read that list.
 #pragma once
 
@@ -52,7 +52,7 @@ class OptionTable {
   void group(std::string_view name, Options& options) {
     const std::string outer = prefix_;
     prefix_ += std::string(name) + ".";
-    describe(*this, options);
+    listOptions(*this, options);
     prefix_ = outer;
   }
 
@@ -68,11 +68,11 @@ class OptionTable {
   std::string prefix_;
 };
 
-/// The fields of `options`; needs `void describe(OptionTable&, Options&)` beside the struct.
+/// The fields of `options`; needs `void listOptions(OptionTable&, Options&)` beside the struct.
 template <typename Options>
 OptionTable optionTable(Options& options) {
   OptionTable table;
-  describe(table, options);
+  listOptions(table, options);
   return table;
 }
 

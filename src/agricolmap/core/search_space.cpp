@@ -4,7 +4,7 @@
 
 namespace agricolmap {
 
-void describe(OptionTable& table, PriorUncertainty& options) {
+void listOptions(OptionTable& table, PriorUncertainty& options) {
   table.number(
       "translation", options.translation, 0.0, kAnywhere, "m",
       "how far off the initial guess may be, horizontally (paper: 5); 1e6: anywhere in the "

@@ -21,7 +21,7 @@ struct PriorUncertainty {
   double scale = 0.30;         ///< of each horizontal axis, relative (0.30: 0.7–1.3)
   bool scale_unknown = false;  ///< and of all three axes together, by a factor from 0.1 to 10
 };
-void describe(OptionTable& table, PriorUncertainty& options);
+void listOptions(OptionTable& table, PriorUncertainty& options);
 
 /// Half-width of the interval of log-scales: a file whose axis is off by a factor of 1 ± scale
 /// needs a correction between 1/(1 + scale) and 1/(1 − scale); ±log 1/(1 − scale) covers both

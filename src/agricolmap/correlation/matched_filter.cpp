@@ -7,7 +7,7 @@
 
 namespace agricolmap::correlation {
 
-void describe(OptionTable& table, MatchedFilterOptions& options) {
+void listOptions(OptionTable& table, MatchedFilterOptions& options) {
   table.number("floor", options.floor, 1e-6, 1e6, "mean power",
                "added to the power spectrum that whitens the fixed map; large: no whitening");
   table.number("height_weight", options.height_weight, 0.0, 100.0, "",

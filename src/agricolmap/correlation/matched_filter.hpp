@@ -14,7 +14,7 @@ struct MatchedFilterOptions {
   double floor = 0.4;          ///< added to the power spectrum, in units of its mean
   double height_weight = 1.0;  ///< of the height channel; greenness has 1
 };
-void describe(OptionTable& table, MatchedFilterOptions& options);
+void listOptions(OptionTable& table, MatchedFilterOptions& options);
 
 /// A piece of the moving map, moved by a linear map and resampled to the fixed map's cell size.
 /// Offsets are relative to the cell of the piece's anchor.

@@ -12,7 +12,7 @@
 
 namespace agricolmap::locate {
 
-void describe(OptionTable& table, CorrelationOptions& options) {
+void listOptions(OptionTable& table, CorrelationOptions& options) {
   table.number("cell", options.cell, 0.01, 10.0, "m",
                "cell of the search, rounded to whole grid cells");
   table.number("tolerance", options.tolerance, 0.05, 5.0, "cells",

@@ -28,7 +28,7 @@ struct CorrelationOptions {
   map::SignalOptions signal;
   correlation::MatchedFilterOptions filter;
 };
-void describe(OptionTable& table, CorrelationOptions& options);
+void listOptions(OptionTable& table, CorrelationOptions& options);
 
 class CorrelationSearch : public Association {
  public:

@@ -12,7 +12,7 @@ enum class DataTerm {
   kHeight,     ///< height alone
 };
 
-inline void describeDataTerm(OptionTable& table, DataTerm& term) {
+inline void listDataTerm(OptionTable& table, DataTerm& term) {
   table.choice("term", term, {"exg_height", "rgb", "exg", "height"},
                "what is compared: Excess Green and height, colour, or one of the two alone");
 }

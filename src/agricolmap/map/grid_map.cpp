@@ -12,7 +12,7 @@
 
 namespace agricolmap::map {
 
-void describe(OptionTable& table, GridOptions& options) {
+void listOptions(OptionTable& table, GridOptions& options) {
   table.number("cell", options.cell, 0.005, 1.0, "m", "side of a grid cell, s in the paper");
   table.number("sigma", options.sigma, 0.001, 10.0, "m",
                "deviation of the Gaussian weight around a cell's centre, sigma_avg in the paper");

@@ -25,7 +25,7 @@ struct GridOptions {
   /// Larger cells, and σ with them, where a cloud has fewer points than cells.
   bool coarsen = true;
 };
-void describe(OptionTable& table, GridOptions& options);
+void listOptions(OptionTable& table, GridOptions& options);
 
 /// Excess Green of one colour.
 float excessGreen(Rgb colour, ExgKind kind);

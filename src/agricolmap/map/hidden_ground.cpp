@@ -8,7 +8,7 @@
 
 namespace agricolmap::map {
 
-void describe(OptionTable& table, HiddenGroundOptions& options) {
+void listOptions(OptionTable& table, HiddenGroundOptions& options) {
   table.flag("fill", options.fill,
              "take what a plant hides from the moving map's camera for bare ground when refining");
   table.number("radius", options.radius, 0.02, 10.0, "m",

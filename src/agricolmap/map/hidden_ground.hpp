@@ -15,7 +15,7 @@ struct HiddenGroundOptions {
   double whole = 0.5;    ///< a cell with this share of the usual number of points was seen whole
   double bare = 0.3;     ///< bare ground: below this share of the way from soil to plant
 };
-void describe(OptionTable& table, HiddenGroundOptions& options);
+void listOptions(OptionTable& table, HiddenGroundOptions& options);
 
 /// A copy of `map` in which the part of each cell that has no points, for its share of the usual
 /// number of points around, has Excess Green and height of the bare ground around. Cells far from

@@ -17,7 +17,7 @@
 
 namespace agricolmap::map {
 
-void describe(OptionTable& table, LevelOptions& options) {
+void listOptions(OptionTable& table, LevelOptions& options) {
   table.number("cell", options.cell, 0.05, 10.0, "m",
                "side of the cells whose low points stand for the ground");
   table.number("percentile", options.percentile, 0.0, 0.5, "",

@@ -13,7 +13,7 @@ struct LevelOptions {
   double percentile = 0.1;     ///< which of a cell's heights is taken for its ground
   double max_tilt_deg = 45.0;  ///< steeper planes are no field [°]
 };
-void describe(OptionTable& table, LevelOptions& options);
+void listOptions(OptionTable& table, LevelOptions& options);
 
 /// A cloud's ground and the frame in which it is level.
 struct Levelling {

@@ -7,11 +7,11 @@
 
 namespace agricolmap::map {
 
-void describe(OptionTable& table, SignalOptions& options) {
+void listOptions(OptionTable& table, SignalOptions& options) {
   table.number("high_pass", options.high_pass, 0.05, 100.0, "m",
                "variation slower than this wavelength is taken out before maps are compared");
   table.number("clip", options.clip, 0.5, 100.0, "deviations", "larger values are cut to this");
-  describeDataTerm(table, options.term);
+  listDataTerm(table, options.term);
 }
 
 namespace {

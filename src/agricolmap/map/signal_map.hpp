@@ -16,7 +16,7 @@ struct SignalOptions {
   double clip = 4.0;       ///< values beyond this many deviations are cut
   DataTerm term = DataTerm::kExgHeight;
 };
-void describe(OptionTable& table, SignalOptions& options);
+void listOptions(OptionTable& table, SignalOptions& options);
 
 /// Number of channels of a SignalMap: greenness (or luminance) and height.
 inline constexpr int kSignalChannels = 2;

@@ -11,7 +11,7 @@
 
 namespace agricolmap::map {
 
-std::string_view describe(VegetationStatus status) {
+std::string_view toString(VegetationStatus status) {
   switch (status) {
     case VegetationStatus::kOk:
       return "ok";
@@ -29,7 +29,7 @@ std::string_view describe(VegetationStatus status) {
   return "unknown";
 }
 
-void describe(OptionTable& table, VegetationOptions& options) {
+void listOptions(OptionTable& table, VegetationOptions& options) {
   table.number("min_contrast", options.min_contrast, 0.0, 100.0, "",
                "least greenness of plants above soil, in robust deviations of the soil's");
   table.number("min_share", options.min_share, 0.0, 0.5, "",

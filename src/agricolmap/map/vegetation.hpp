@@ -23,7 +23,7 @@ enum class VegetationStatus {
   kClosedCanopy,  ///< one population, green: no soil between the plants
   kExtremeShare,  ///< two populations, one of them a handful of cells
 };
-std::string_view describe(VegetationStatus status);
+std::string_view toString(VegetationStatus status);
 
 struct VegetationOptions {
   /// Least (mean of plants − mean of soil)/(robust deviation of soil). One normal population split
@@ -31,7 +31,7 @@ struct VegetationOptions {
   double min_contrast = 3.1;
   double min_share = 0.005;  ///< of vegetation and of soil among the filled cells
 };
-void describe(OptionTable& table, VegetationOptions& options);
+void listOptions(OptionTable& table, VegetationOptions& options);
 
 /// Excess Green above which a cell is vegetation, and what stands on either side of it.
 struct VegetationThreshold {

@@ -12,7 +12,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, AffineOptions& options) {
+void listOptions(OptionTable& table, AffineOptions& options) {
   table.choice("model", options.model, {"scaled_rotation", "free"}, "what the transform may do");
   table.number("tukey", options.tukey, 2.0, 20.0, "deviations", "residual that gets no weight");
   table.integer("least", options.least, 4, 1000000, "", "matches needed");
@@ -20,7 +20,7 @@ void describe(OptionTable& table, AffineOptions& options) {
   table.integer("seed", options.seed, 0, 2147483647, "", "of the random fits");
 }
 
-std::string_view name(AffineStatus status) {
+std::string_view toString(AffineStatus status) {
   switch (status) {
     case AffineStatus::kOk:
       return "ok";

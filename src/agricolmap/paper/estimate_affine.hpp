@@ -25,14 +25,14 @@ struct AffineOptions {
   int starts = 200;      ///< random minimal fits to start from
   int seed = 1;
 };
-void describe(OptionTable& table, AffineOptions& options);
+void listOptions(OptionTable& table, AffineOptions& options);
 
 enum class AffineStatus {
   kOk,
   kTooFewMatches,  ///< fewer than `least` matches, or fewer that agree
   kDegenerate,     ///< the matches lie on a spot or a line, or fit only a mirrored map
 };
-std::string_view name(AffineStatus status);
+std::string_view toString(AffineStatus status);
 
 /// Everything but `status` and `matches` is NaN or empty unless `ok()`.
 struct AffineEstimate {

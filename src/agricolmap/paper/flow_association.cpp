@@ -11,7 +11,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, FlowAssociationOptions& options) {
+void listOptions(OptionTable& table, FlowAssociationOptions& options) {
   table.group("describe", options.describe);
   table.group("cost", options.cost);
   table.group("flow", options.flow);

@@ -24,7 +24,7 @@ struct FlowAssociationOptions {
   bool rematch = true;
   int seed = 1;  ///< of the random search
 };
-void describe(OptionTable& table, FlowAssociationOptions& options);
+void listOptions(OptionTable& table, FlowAssociationOptions& options);
 
 /// Descriptors are only so tolerant of turning and stretching. With `warps`, what the guess allows
 /// is cut into parts within the tolerances, and the moving map is matched once per part, warped to

@@ -7,7 +7,7 @@
 
 namespace agricolmap::pipeline {
 
-void describe(OptionTable& table, RegistrationOptions& options) {
+void listOptions(OptionTable& table, RegistrationOptions& options) {
   table.flag("geometry_only", options.geometry_only,
              "use heights alone, as clouds without colours need");
   table.choice("association", options.association, {"correlation", "flow"},

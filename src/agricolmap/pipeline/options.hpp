@@ -47,7 +47,7 @@ struct RegistrationOptions {
   verdict::UncertaintyOptions uncertainty;
   verdict::VerdictOptions verdict;
 };
-void describe(OptionTable& table, RegistrationOptions& options);
+void listOptions(OptionTable& table, RegistrationOptions& options);
 
 /// Names of the presets: "default" measures best; "paper" is the paper's chain and parameters, with
 /// the moving map matched under several warps, which the range of errors that the paper reports

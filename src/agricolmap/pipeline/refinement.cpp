@@ -163,7 +163,7 @@ RefineOutcome PoseRefinement::refineByPoints(
   for (const auto& [map, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
     if (map->points.empty()) {
       return failed(fmt::format("vegetation cannot be told from soil in the {} map: {}", name,
-                                describe(map->threshold.status)));
+                                toString(map->threshold.status)));
     }
   }
   // Heights start where the maps agree on the ground; the vertical stage has the last word.
@@ -179,7 +179,7 @@ RefineOutcome PoseRefinement::refineByPoints(
   counts.emplace_back("cpd_iterations", static_cast<double>(result.iterations));
   counts.emplace_back("cpd_matched_share", result.matched_share);
   if (!result.usable()) {
-    return failed(fmt::format("the point refinement failed: {}", describe(result.status)));
+    return failed(fmt::format("the point refinement failed: {}", toString(result.status)));
   }
   RefineOutcome outcome;
   outcome.best =

@@ -8,7 +8,7 @@
 
 namespace agricolmap::refine {
 
-void describe(OptionTable& table, DenseRefineOptions& options) {
+void listOptions(OptionTable& table, DenseRefineOptions& options) {
   table.integer("iterations", options.iterations, 1, 1000, "", "Gauss-Newton steps per level");
   table.number("robust", options.robust, 0.1, 1e6, "deviations",
                "residuals beyond this fade out (Cauchy weight)");

@@ -20,7 +20,7 @@ struct DenseRefineOptions {
   int hops = 8;      ///< rounds of looking into neighbouring basins at most, see basins.hpp
   double hop = 1.0;  ///< how far they are looked for [cells]
 };
-void describe(OptionTable& table, DenseRefineOptions& options);
+void listOptions(OptionTable& table, DenseRefineOptions& options);
 
 enum class RefineStatus { kConverged, kNoOverlap, kDiverged };
 

@@ -10,7 +10,7 @@
 
 namespace agricolmap::refine {
 
-void describe(OptionTable& table, VerticalOptions& options) {
+void listOptions(OptionTable& table, VerticalOptions& options) {
   table.number("ground_window", options.ground_window, 0.05, 100.0, "m",
                "side of the window whose lowest cells stand for the ground");
   table.number("ground_tolerance", options.ground_tolerance, 0.001, 10.0, "m",

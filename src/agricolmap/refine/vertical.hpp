@@ -15,7 +15,7 @@ struct VerticalOptions {
   double max_slope = 0.2;           ///< larger tilts between the levelled maps are refused
   double robust = 2.5;              ///< residuals beyond this many deviations do not count (Tukey)
 };
-void describe(OptionTable& table, VerticalOptions& options);
+void listOptions(OptionTable& table, VerticalOptions& options);
 
 enum class VerticalStatus { kOk, kTooFewCells, kTooSteep };
 

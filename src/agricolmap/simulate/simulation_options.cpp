@@ -2,7 +2,7 @@
 
 namespace agricolmap::simulate {
 
-void describe(OptionTable& t, FieldOptions& o) {
+void listOptions(OptionTable& t, FieldOptions& o) {
   t.number("width", o.width, 2.0, 200.0, "m", "east-west extent of the UAV map");
   t.number("height", o.height, 2.0, 200.0, "m", "north-south extent of the UAV map");
   t.flag("random_row_heading", o.random_row_heading, "rows in a random direction");
@@ -33,7 +33,7 @@ void describe(OptionTable& t, FieldOptions& o) {
   t.number("clods", o.clods, 0.0, 0.1, "m", "deviation of the soil's height over centimetres");
 }
 
-void describe(OptionTable& t, ViewOptions& o) {
+void listOptions(OptionTable& t, ViewOptions& o) {
   t.number("leaf_unshared", o.leaf_unshared, 0.0, 1.0, "",
            "fraction of leaves and of fine soil texture that the views do not share");
   t.number("wind", o.wind, 0.0, 0.3, "m", "deviation of a plant's top between the views");
@@ -44,7 +44,7 @@ void describe(OptionTable& t, ViewOptions& o) {
   t.number("weeds_pulled", o.weeds_pulled, 0.0, 1.0, "", "fraction of weeds gone in the UGV view");
 }
 
-void describe(OptionTable& t, ColourOptions& o) {
+void listOptions(OptionTable& t, ColourOptions& o) {
   t.number("exposure", o.exposure, 0.1, 5.0, "", "factor on the automatic exposure");
   t.number("white_balance", o.white_balance, 0.0, 0.5, "", "deviation of red and blue gains");
   t.number("gamma_spread", o.gamma_spread, 0.0, 0.5, "", "deviation of the tone curve's exponent");
@@ -53,7 +53,7 @@ void describe(OptionTable& t, ColourOptions& o) {
   t.number("noise", o.noise, 0.0, 60.0, "counts", "deviation per channel");
 }
 
-void describe(OptionTable& t, UavOptions& o) {
+void listOptions(OptionTable& t, UavOptions& o) {
   t.number("gsd", o.gsd, 0.004, 0.2, "m", "ground sampling distance");
   t.number("density", o.density, 0.01, 4.0, "1/gsd2", "points per squared sampling distance");
   t.number("jitter", o.jitter, 0.0, 2.0, "gsd", "random shift of a sample");
@@ -68,7 +68,7 @@ void describe(OptionTable& t, UavOptions& o) {
   t.group("colour", o.colour);
 }
 
-void describe(OptionTable& t, UgvOptions& o) {
+void listOptions(OptionTable& t, UgvOptions& o) {
   t.number("length", o.length, 0.5, 200.0, "m", "length of the strip");
   t.number("width", o.width, 0.2, 10.0, "m", "width of the strip");
   t.number("spacing", o.spacing, 0.002, 0.05, "m", "distance of samples at the strip's middle");
@@ -88,7 +88,7 @@ void describe(OptionTable& t, UgvOptions& o) {
   t.group("colour", o.colour);
 }
 
-void describe(OptionTable& t, GeotagOptions& o) {
+void listOptions(OptionTable& t, GeotagOptions& o) {
   t.number("translation", o.translation, 0.0, 1000.0, "m", "horizontal error at the centre");
   t.number("heading_deg", o.heading_deg, 0.0, 180.0, "deg", "heading error, random sign");
   t.number("scale", o.scale, 0.0, 0.9, "", "scale error per horizontal axis, random signs");
@@ -106,7 +106,7 @@ void describe(OptionTable& t, GeotagOptions& o) {
          "UGV file in the UAV file's coordinates, prior is the identity");
 }
 
-void describe(OptionTable& t, SimulationOptions& o) {
+void listOptions(OptionTable& t, SimulationOptions& o) {
   t.choice("crop", o.crop, {"soybean", "sugar_beet_10m", "sugar_beet_20m", "winter_wheat", "maize"},
            "kind of plants");
   t.group("field", o.field);

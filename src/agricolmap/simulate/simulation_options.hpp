@@ -36,7 +36,7 @@ struct FieldOptions {
   double ridge = 0.006;            ///< half height of the ridges along the rows [m]
   double clods = 0.006;            ///< deviation of the soil's height over centimetres [m]
 };
-void describe(OptionTable& table, FieldOptions& options);
+void listOptions(OptionTable& table, FieldOptions& options);
 
 /// What is different between the two visits.
 struct ViewOptions {
@@ -48,7 +48,7 @@ struct ViewOptions {
   double overcast = 0.3;       ///< share of light from the whole sky, 1 = no shadows
   double weeds_pulled = 0.0;   ///< fraction of the weeds gone in the UGV view
 };
-void describe(OptionTable& table, ViewOptions& options);
+void listOptions(OptionTable& table, ViewOptions& options);
 
 /// From light to 8-bit colours. Each cloud draws its own response around these.
 struct ColourOptions {
@@ -59,7 +59,7 @@ struct ColourOptions {
   double gradient = 0.07;       ///< deviation of brightness over ~5 m (vignetting, clouds)
   double noise = 4.0;           ///< deviation per channel, 8-bit counts
 };
-void describe(OptionTable& table, ColourOptions& options);
+void listOptions(OptionTable& table, ColourOptions& options);
 
 /// The drone's cloud: seen from above, reconstructed from overlapping pictures.
 struct UavOptions {
@@ -75,7 +75,7 @@ struct UavOptions {
   double holes = 0.01;              ///< fraction of the area without points
   ColourOptions colour;
 };
-void describe(OptionTable& table, UavOptions& options);
+void listOptions(OptionTable& table, UavOptions& options);
 
 /// The robot's cloud: a narrow strip seen by a forward-looking camera.
 struct UgvOptions {
@@ -96,7 +96,7 @@ struct UgvOptions {
   double drift = 0.005;        ///< largest drift of the path over its length
   ColourOptions colour;
 };
-void describe(OptionTable& table, UgvOptions& options);
+void listOptions(OptionTable& table, UgvOptions& options);
 
 /// Error of the initial guess, see SimulatedPair::prior.
 struct GeotagOptions {
@@ -114,7 +114,7 @@ struct GeotagOptions {
   bool utm = true;                ///< UAV file in UTM coordinates, else from (0, 0, 0)
   bool ugv_georeferenced = false;  ///< UGV file in the UAV file's coordinates: identity prior
 };
-void describe(OptionTable& table, GeotagOptions& options);
+void listOptions(OptionTable& table, GeotagOptions& options);
 
 struct SimulationOptions {
   Crop crop = Crop::kSoybean;
@@ -129,7 +129,7 @@ struct SimulationOptions {
   bool beyond_map = false;   ///< it comes from a part of the field that the map does not show
   bool mirrored = false;     ///< its left is its right: the same rows, plants that lie nowhere
 };
-void describe(OptionTable& table, SimulationOptions& options);
+void listOptions(OptionTable& table, SimulationOptions& options);
 
 /// Usual layouts and sensors for a crop.
 SimulationOptions cropPreset(Crop crop);

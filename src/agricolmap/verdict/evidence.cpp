@@ -9,7 +9,7 @@
 
 namespace agricolmap::verdict {
 
-void describe(OptionTable& table, EvidenceOptions& options) {
+void listOptions(OptionTable& table, EvidenceOptions& options) {
   table.number("block", options.block, 0.2, 100.0, "m", "side of the blocks that are placed alone");
   table.number("block_reach", options.block_reach, 0.05, 100.0, "m",
                "how far from its predicted place a block is looked for");

@@ -19,7 +19,7 @@ struct EvidenceOptions {
   double exclusion = 0.35;   ///< other peaks are counted from this distance on [m]
   correlation::MatchedFilterOptions filter;
 };
-void describe(OptionTable& table, EvidenceOptions& options);
+void listOptions(OptionTable& table, EvidenceOptions& options);
 
 /// One block of the moving map, placed alone.
 struct BlockEvidence {

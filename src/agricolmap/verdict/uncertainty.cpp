@@ -10,7 +10,7 @@
 
 namespace agricolmap::verdict {
 
-void describe(OptionTable& table, UncertaintyOptions& options) {
+void listOptions(OptionTable& table, UncertaintyOptions& options) {
   table.number("inflation", options.inflation, 0.0, 1000.0, "",
                "factor on the deviations that the blocks' disagreement gives");
   table.number("floor", options.floor, 0.0, 10.0, "m",

@@ -22,7 +22,7 @@ struct UncertaintyOptions {
   double height_inflation = 1.2;  ///< factor on the deviation of the ground's heights
   double height_floor = 0.01;     ///< deviation of the height that is left without any [m]
 };
-void describe(OptionTable& table, UncertaintyOptions& options);
+void listOptions(OptionTable& table, UncertaintyOptions& options);
 
 /// Errors of a pose move a point at q (fixed levelled frame, from `centre`) by
 ///   (δx, δy) + δψ·(−q_y, q_x) + δa·u(u·q) + δb·v(v·q)

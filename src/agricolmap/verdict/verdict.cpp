@@ -23,7 +23,7 @@ const char* toString(Status status) {
   return "rejected";
 }
 
-void describe(OptionTable& table, VerdictOptions& options) {
+void listOptions(OptionTable& table, VerdictOptions& options) {
   table.number("min_probability", options.min_probability, 0.0, 1.0, "",
                "least probability of being within 5 cm RMS of the truth in the plane");
   table.number("min_uniqueness", options.min_uniqueness, 0.0, 100.0, "",

@@ -27,7 +27,7 @@ struct VerdictOptions {
   double scale_margin = 0.05;
   double heading_margin_deg = 2.0;
 };
-void describe(OptionTable& table, VerdictOptions& options);
+void listOptions(OptionTable& table, VerdictOptions& options);
 
 struct Verdict {
   Status status = Status::kRejected;

@@ -17,7 +17,7 @@
 
 namespace agricolmap::io {
 
-void describe(OptionTable& table, RasterOptions& options) {
+void listOptions(OptionTable& table, RasterOptions& options) {
   table.choice("bands", options.bands, {"auto", "rgb", "rbg", "grb", "gbr", "brg", "bgr"},
                "colours of the picture's first three bands; auto: as the file declares");
   table.flag("black_is_nodata", options.black_is_nodata,

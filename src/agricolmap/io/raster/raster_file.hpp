@@ -28,7 +28,7 @@ struct RasterOptions {
   BandOrder bands = BandOrder::kAuto;
   bool black_is_nodata = true;
 };
-void describe(OptionTable& table, RasterOptions& options);
+void listOptions(OptionTable& table, RasterOptions& options);
 
 /// A rectangle of a file's pixels, counted from its first column and row: its top left.
 struct PixelWindow {

@@ -14,7 +14,7 @@ struct ImportOptions {
   int step = 1;               ///< keep every n-th pixel of every n-th row
   double max_height = 100.0;  ///< farthest from the median height that is believed [m]
 };
-void describe(OptionTable& table, ImportOptions& options);
+void listOptions(OptionTable& table, ImportOptions& options);
 
 /// One point per valid pixel of the orthomosaic, at the pixel's centre, in its projected
 /// coordinates, with the surface model's height there (bilinear; the model may have another

@@ -14,7 +14,7 @@
 
 namespace agricolmap::paper {
 
-std::string_view describe(CpdStatus status) {
+std::string_view toString(CpdStatus status) {
   switch (status) {
     case CpdStatus::kConverged:
       return "converged";
@@ -32,7 +32,7 @@ std::string_view describe(CpdStatus status) {
   return "unknown";
 }
 
-void describe(OptionTable& table, CpdOptions& options) {
+void listOptions(OptionTable& table, CpdOptions& options) {
   table.choice("model", options.model, {"affine", "scaled", "similarity", "rigid"},
                "horizontal map: 6 parameters, 5 without shear, 4 with one scale, 3 without scale");
   table.number("sigma_start", options.sigma_start, 0.005, 5.0, "m",

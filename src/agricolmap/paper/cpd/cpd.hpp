@@ -52,7 +52,7 @@ struct CpdOptions {
   double max_motion = 0.5;      ///< motion from the start that is no refinement any more [m]
   double min_matched = 0.1;     ///< least share of the moving points matched in the end
 };
-void describe(OptionTable& table, CpdOptions& options);
+void listOptions(OptionTable& table, CpdOptions& options);
 
 enum class CpdStatus {
   kConverged,
@@ -62,7 +62,7 @@ enum class CpdStatus {
   kDegenerate,      ///< the matched points determine no map of the model
   kRanAway,         ///< moved further than `max_motion`
 };
-std::string_view describe(CpdStatus status);
+std::string_view toString(CpdStatus status);
 
 /// Where the refinement starts, and what it returns: fixed = plane · moving horizontally,
 /// fixed_z = height_scale · moving_z + height_offset; levelled frames [m].

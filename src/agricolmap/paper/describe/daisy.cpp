@@ -12,7 +12,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, DaisyOptions& options) {
+void listOptions(OptionTable& table, DaisyOptions& options) {
   table.number("radius", options.radius, 3.0, 60.0, "cells",
                "radius of the outer ring at the finest level");
   table.number("shrink", options.shrink, 0.5, 1.0, "",

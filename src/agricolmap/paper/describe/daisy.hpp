@@ -32,7 +32,7 @@ struct DaisyOptions {
   double shrink = 0.7;
   DaisyNorm norm = DaisyNorm::kFull;
 };
-void describe(OptionTable& table, DaisyOptions& options);
+void listOptions(OptionTable& table, DaisyOptions& options);
 
 /// Bytes per unit of a descriptor component; larger values are cut at 255. A full descriptor
 /// spreads its unit length over up to 128 components, so it is stretched more.

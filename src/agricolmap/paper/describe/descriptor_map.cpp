@@ -5,8 +5,8 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, DescribeOptions& options) {
-  map::describeDataTerm(table, options.term);
+void listOptions(OptionTable& table, DescribeOptions& options) {
+  map::listDataTerm(table, options.term);
   table.group("daisy", options.daisy);
   table.group("fpfh", options.fpfh);
 }

@@ -18,7 +18,7 @@ struct DescribeOptions {
   DaisyOptions daisy;
   FpfhOptions fpfh;
 };
-void describe(OptionTable& table, DescribeOptions& options);
+void listOptions(OptionTable& table, DescribeOptions& options);
 
 /// Descriptors of every cell, as bytes. A cell's `kStride` bytes are DAISY's 128 (daisy.hpp),
 /// FPFH's 33 (fpfh.hpp) and 31 of padding, all zero where there is nothing to describe. The padding

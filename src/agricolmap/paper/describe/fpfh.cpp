@@ -11,7 +11,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, FpfhOptions& options) {
+void listOptions(OptionTable& table, FpfhOptions& options) {
   table.number("radius", options.radius, 1.5, 8.0, "cells", "radius of the neighbourhood");
   table.number("exaggeration", options.exaggeration, 1.0, 20.0, "",
                "factor of the heights; not in the paper");

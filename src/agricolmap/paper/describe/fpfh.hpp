@@ -20,7 +20,7 @@ struct FpfhOptions {
   /// middle bins, where plants look like ground; it spreads them over the bins.
   double exaggeration = 8.0;
 };
-void describe(OptionTable& table, FpfhOptions& options);
+void listOptions(OptionTable& table, FpfhOptions& options);
 
 /// Bytes per unit of a histogram; the bins of each angle sum to 1.
 inline constexpr float kFpfhScale = 255.0F;

@@ -13,7 +13,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, CostOptions& options) {
+void listOptions(OptionTable& table, CostOptions& options) {
   table.number("alpha", options.alpha, 0.0, 100.0, "", "weight of DAISY in the matching cost");
   table.number("beta", options.beta, 0.0, 100.0, "", "weight of FPFH in the matching cost");
 }

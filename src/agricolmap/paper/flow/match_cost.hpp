@@ -13,7 +13,7 @@ struct CostOptions {
   double alpha = 1.0;  ///< weight of the visual term (Tab. III)
   double beta = 0.5;   ///< weight of the geometric term (Tab. III)
 };
-void describe(OptionTable& table, CostOptions& options);
+void listOptions(OptionTable& table, CostOptions& options);
 
 /// How much the differences of cells that have nothing to do with each other vary [bytes].
 struct UnrelatedSpread {

@@ -11,7 +11,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, FlowOptions& options) {
+void listOptions(OptionTable& table, FlowOptions& options) {
   table.integer("seed_spacing", options.seed_spacing, 1, 50, "cells", "between seeds");
   table.integer("levels", options.levels, 1, 7, "", "resolutions, each half the one before");
   table.integer("iterations", options.iterations, 1, 100, "",
@@ -170,8 +170,7 @@ class Matcher {
 
   static Cell cellAt(const DescriptorMap& map, const Eigen::Vector2d& point) {
     const Eigen::Vector2d local = (point - map.frame.corner) / map.frame.cell;
-    Cell cell{static_cast<int>(std::floor(local.y())),
-                        static_cast<int>(std::floor(local.x()))};
+    Cell cell{static_cast<int>(std::floor(local.y())), static_cast<int>(std::floor(local.x()))};
     if (cell.col >= 0 && cell.row >= 0 && cell.col < map.frame.cols && cell.row < map.frame.rows) {
       cell.index = static_cast<std::ptrdiff_t>(map.index(cell.row, cell.col));
     }

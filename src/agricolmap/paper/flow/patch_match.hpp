@@ -18,7 +18,7 @@ struct FlowOptions {
   double refine_radius = 4;  ///< of the random search below the coarsest level [cells], r in CPM
   double closure = 5.0;      ///< largest forward–backward difference [cells]; 0 = no check
 };
-void describe(OptionTable& table, FlowOptions& options);
+void listOptions(OptionTable& table, FlowOptions& options);
 
 /// Seeds in a lattice; those on unusable ground take no part.
 struct SeedLattice {

@@ -12,7 +12,7 @@
 
 namespace agricolmap::paper {
 
-void describe(OptionTable& table, VoteOptions& options) {
+void listOptions(OptionTable& table, VoteOptions& options) {
   table.number("step", options.step, 0.1, 100.0, "cells", "t_f in the paper: step of the vote");
   table.number("coarse", options.coarse, 1.0, 100.0, "t_f",
                "step of the search over heading and scales");
@@ -67,8 +67,8 @@ std::vector<double> lattice(double limit, double step) {
   return values;
 }
 
-std::vector<Hypothesis> hypotheses(const PriorUncertainty& u,
-                                           const Eigen::Vector2d& half_extent, double step) {
+std::vector<Hypothesis> hypotheses(const PriorUncertainty& u, const Eigen::Vector2d& half_extent,
+                                   double step) {
   const auto stepFor = [&](double arm) { return step / std::max(arm, step); };
   std::vector<Hypothesis> result;
   const double yaw_limit = u.heading_deg * std::numbers::pi / 180.0;
@@ -249,7 +249,8 @@ VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& 
                        arm * (std::expm1(logScaleLimit(space.uncertainty)) +
                               std::min(2.0, yawLimit(space.uncertainty))) +
                        bin;
-  const Eigen::AlignedBox2d window(Eigen::Vector2d::Constant(-reach), Eigen::Vector2d::Constant(reach));
+  const Eigen::AlignedBox2d window(Eigen::Vector2d::Constant(-reach),
+                                   Eigen::Vector2d::Constant(reach));
   const ShiftVote vote(pairs, window, bin);
   std::vector<Peak> peaks(all.size());
   parallelFor(

@@ -19,7 +19,7 @@ struct VoteOptions {
   int placements = 5;      ///< distinct placements to return at most
   int least = 12;          ///< votes that a placement needs
 };
-void describe(OptionTable& table, VoteOptions& options);
+void listOptions(OptionTable& table, VoteOptions& options);
 
 /// A placement and the matches (indices) within the tolerance of it.
 struct VotedPlacement {

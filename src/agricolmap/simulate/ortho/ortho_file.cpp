@@ -15,8 +15,8 @@
 
 namespace agricolmap::simulate {
 
-void describe(OptionTable& table, OrthoFileOptions& options) {
-  describe(table, options.raster);
+void listOptions(OptionTable& table, OrthoFileOptions& options) {
+  listOptions(table, options.raster);
   table.number("gsd", options.gsd, 0.0, 0.1, "m",
                "size of a pixel of the mosaic; 0: as its georeference says");
 }

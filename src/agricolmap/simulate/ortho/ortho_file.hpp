@@ -22,7 +22,7 @@ struct OrthoFileOptions {
   io::RasterOptions raster;
   double gsd = 0.0;  ///< size of a pixel [m]; 0: as the georeference says
 };
-void describe(OptionTable& table, OrthoFileOptions& options);
+void listOptions(OptionTable& table, OrthoFileOptions& options);
 
 /// The part of the mosaic, at most `width` × `height` metres, that `seed` chooses: around a
 /// random green pixel, with data in nearly all of it or, where no such part is found, the fullest
