@@ -22,7 +22,7 @@ struct FlowAssociationOptions {
   /// Matches the placements found again, each with the moving map warped by it; not in the
   /// paper.
   bool rematch = true;
-  int seed = 1;  ///< of the random search
+  int seed = 1;  ///< of the random search; not listed: the registration has one
 };
 void listOptions(OptionTable& table, FlowAssociationOptions& options);
 
@@ -38,7 +38,6 @@ void listOptions(OptionTable& table, FlowAssociationOptions& options);
 /// `vote`.
 class FlowAssociation : public locate::Association {
  public:
-  /// Throws UsageError for options outside their limits.
   explicit FlowAssociation(const FlowAssociationOptions& options);
   locate::AssociationResult associate(const map::GridMap& fixed, const map::GridMap& moving,
                                       const SearchSpace& space, StageTimes& times) const override;

@@ -30,9 +30,7 @@ std::unique_ptr<locate::Association> makeAssociation(const RegistrationOptions& 
   if (options.association == AssociationKind::kFlow) {
     return std::make_unique<paper::FlowAssociation>(options.flow);
   }
-  locate::CorrelationOptions search = options.search;
-  search.signal = options.signal;
-  return std::make_unique<locate::CorrelationSearch>(search);
+  return std::make_unique<locate::CorrelationSearch>(options.search);
 }
 
 double count(const std::vector<std::pair<std::string, double>>& counts, std::string_view name) {
@@ -144,7 +142,7 @@ PairPlacer::Judged PairPlacer::judgePose(const Eigen::Affine2d& pose,
 
 // 7d. The paper's own refinement stays as it is.
 std::optional<bool> PairPlacer::straighten(const RefineOutcome& refined, Judged& judged) const {
-  if (options_.refine != RefineKind::kDense && options_.refine != RefineKind::kDenseCpd) return {};
+  if (options_.refine != RefineKind::kDense) return {};
   const auto straight = verdict::straightenedPose(judged.finding.evidence, space_.scale_axes);
   if (!straight) return {};
   Judged other = judgePose(*straight, refined);

@@ -28,10 +28,6 @@ constexpr double kLeastFinerOverlap = 0.5;
 /// How far around the strip the fixed map's vegetation takes part [m]: its outlines decide what is
 /// plant and what is soil, too.
 constexpr double kVegetationRim = 2.0;
-/// The point refinement has its say when it moves no corner by more than this [m] and keeps this
-/// share of the correlation.
-constexpr double kMostDifference = 0.08;
-constexpr double kLeastCorrelation = 0.96;
 
 map::GridMap withoutHidden(const map::GridMap& moving, const RegistrationOptions& options) {
   map::HiddenGroundOptions hidden = options.hidden;
@@ -173,7 +169,7 @@ RefineOutcome PoseRefinement::refineByPoints(
   pose.plane = start.pose;
   pose.height_offset = vertical.status == refine::VerticalStatus::kOk ? vertical.offset : 0.0;
   const paper::CpdResult result =
-      paper::refineByCpd(fixed.points, moving.points, pose, options_.cpd, space_.scale_axes);
+      paper::refineByCpd(fixed.points, moving.points, pose, options_.cpd);
   counts.emplace_back("fixed_vegetation_points", static_cast<double>(fixed.points.size()));
   counts.emplace_back("moving_vegetation_points", static_cast<double>(moving.points.size()));
   counts.emplace_back("cpd_iterations", static_cast<double>(result.iterations));
@@ -185,13 +181,6 @@ RefineOutcome PoseRefinement::refineByPoints(
   outcome.best =
       RefinedPose{result.pose.plane, meter_->significance(result.pose.plane), start.overlap};
   return outcome;
-}
-
-bool PoseRefinement::agrees(const RefinedPose& points, const RefinedPose& dense) const {
-  // In canopy that closes, the points along its gaps lead astray: by an edge of the strip, or to
-  // where the maps correlate less.
-  return meter_->distance(points.pose, dense.pose) <= kMostDifference &&
-         fit(points.pose).correlation >= kLeastCorrelation * fit(dense.pose).correlation;
 }
 
 RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, StageTimes& times,
@@ -208,27 +197,9 @@ RefineOutcome PoseRefinement::choose(const std::vector<Placement>& placements, S
     }
   });
   return times.run("refine", [&]() -> RefineOutcome {
-    if (options_.refine == RefineKind::kDense || options_.refine == RefineKind::kDenseCpd) {
-      RefineOutcome dense = refineDensely(std::move(poses), counts);
-      if (!dense.best || options_.refine == RefineKind::kDense) return dense;
-      // Closed canopy or a map without colours has no vegetation points; the report says so.
-      const RefineOutcome points = refineByPoints(*dense.best, counts);
-      const bool agree = points.best && agrees(*points.best, *dense.best);
-      counts.emplace_back("cpd_used", agree ? 1.0 : 0.0);
-      if (agree) {
-        // Their errors have little in common: outlines of plants here, leaves and soil there.
-        dense.best->pose.matrix() =
-            0.5 * (dense.best->pose.matrix() + points.best->pose.matrix()).eval();
-        dense.best->significance = meter_->significance(dense.best->pose);
-      }
-      return dense;
-    }
+    if (options_.refine == RefineKind::kDense) return refineDensely(std::move(poses), counts);
     if (!poses.front()) return failed("the coherent matches determine no affine");
-    if (options_.refine == RefineKind::kCpd) return refineByPoints(*poses.front(), counts);
-    poses.front()->significance = meter_->significance(poses.front()->pose);
-    RefineOutcome outcome;
-    outcome.best = poses.front();
-    return outcome;
+    return refineByPoints(*poses.front(), counts);
   });
 }
 

@@ -41,7 +41,7 @@ class PoseRefinement {
 
   /// Estimates an affine from each placement (stage 6) and refines (stage 7): densely, all
   /// placements through the coarse levels and the most significant one to the finest; or, as in the
-  /// paper, the placement with most votes by CPD on the vegetation points; or not at all.
+  /// paper, the placement with most votes by CPD on the vegetation points.
   RefineOutcome choose(const std::vector<Placement>& placements, StageTimes& times,
                        std::vector<std::pair<std::string, double>>& counts) const;
   /// Refines one pose densely, from the ranking level on; nothing when it does not hold.
@@ -70,8 +70,6 @@ class PoseRefinement {
                               std::vector<std::pair<std::string, double>>& counts) const;
   /// Through the cells finer than the ranking level.
   RefinedPose refineFinely(const RefinedPose& start) const;
-  /// Whether the point refinement's answer can stand beside the dense one's.
-  bool agrees(const RefinedPose& points, const RefinedPose& dense) const;
   RefineOutcome refineByPoints(const RefinedPose& start,
                                std::vector<std::pair<std::string, double>>& counts) const;
 

@@ -77,14 +77,11 @@ class Registrar {
   Registration runAtUnknownScale(const Eigen::Affine3d& guess) {
     prepare(guess);
     const std::vector<double> factors = scaleFactors(moving_box_, fixed_box_, options_.prior);
-    // What the points would add is not worth their time at a dozen scales that are wrong.
-    RegistrationOptions trial = options_;
-    if (trial.refine == RefineKind::kDenseCpd) trial.refine = RefineKind::kDense;
     std::optional<Found> best;
     for (const double factor : factors) {
       const Eigen::Affine3d scaled = scaledGuess(guess, factor);
       prepareMoving(scaled);
-      std::optional<PairOutcome> next = placer(trial).searchOnce(0, nullptr);
+      std::optional<PairOutcome> next = placer().searchOnce(0, nullptr);
       if (!next || (best && !better(*next, best->outcome))) continue;
       best = Found{factor, scaled, result_.frames, *std::move(next)};
       if (best->outcome.verdict.status == verdict::Status::kAccepted) break;
@@ -164,10 +161,8 @@ class Registrar {
     times_.run("grid", [&] { gridMoving(); });
   }
 
-  PairPlacer placer() { return placer(options_); }
-  /// `options` must outlive it.
-  PairPlacer placer(const RegistrationOptions& options) {
-    return {result_.fixed_map, result_.moving_map, result_.space, options, times_, association_};
+  PairPlacer placer() {
+    return {result_.fixed_map, result_.moving_map, result_.space, options_, times_, association_};
   }
 
   /// The guess with the moving cloud made larger about its middle.
@@ -235,18 +230,13 @@ class Registrar {
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                             const RegistrationOptions& chosen, StageTimes& times,
                             const locate::Association* association) {
-  checkOptions(chosen);
-  RegistrationOptions options = chosen;
+  const RegistrationOptions options = resolved(chosen);
   requireColours(fixed, moving, options);
   if ((options.prior.anywhere() || options.prior.scale_unknown) && association == nullptr &&
       options.association == AssociationKind::kFlow) {
     throw UsageError(
         "the flow needs to know about where to look and at what scale: give --prior-sigma with a "
         "translation and no --scale-unknown, or use --association correlation");
-  }
-  if (options.geometry_only) {
-    options.signal.term = map::DataTerm::kHeight;
-    options.flow.describe.term = map::DataTerm::kHeight;
   }
   Registrar registrar(fixed, moving, options, times, association);
   return options.prior.scale_unknown ? registrar.runAtUnknownScale(guess) : registrar.run(guess);

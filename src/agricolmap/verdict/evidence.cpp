@@ -17,7 +17,6 @@ void listOptions(OptionTable& table, EvidenceOptions& options) {
                "a block agrees when its best place is this near to the predicted one");
   table.number("exclusion", options.exclusion, 0.01, 100.0, "m",
                "other peaks are counted from this distance on");
-  table.group("filter", options.filter);
 }
 
 namespace {
@@ -52,9 +51,7 @@ EvidenceMeter::EvidenceMeter(const map::SignalMap& fixed, const map::SignalMap& 
       fixed_(fixed),
       options_(options),
       filter_(fixed, options.filter),
-      strip_(map::stripFrame(moving)) {
-  checkOptions(options);
-}
+      strip_(map::stripFrame(moving)) {}
 
 correlation::Template EvidenceMeter::wholeTemplate(const Eigen::Affine2d& pose) const {
   Eigen::AlignedBox2d bounds;
