@@ -5,11 +5,14 @@
 
 #include <CLI/CLI.hpp>
 #include <new>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "common.hpp"
+#include "option_flags.hpp"
 
 namespace agricolmap {
 namespace {
@@ -22,7 +25,7 @@ constexpr const char* kFooter =
 void requireCpu() {
 #if defined(__x86_64__) && defined(__AVX2__)
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) {
-    throw Error(ExitCode::kInternal,
+    throw Error(ErrorKind::kInternal,
                 "this processor has no AVX2/FMA; build with -DAGRICOLMAP_ARCH= for it");
   }
 #endif
@@ -85,14 +88,15 @@ ExitCode run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using agricolmap::ExitCode;
-  const auto fail = [](const char* what, ExitCode code) {
-    fmt::print(stderr, "agricolmap: {}\n", what);
+  const auto fail = [](const char* what, ExitCode code, const std::string& flags = "") {
+    fmt::print(stderr, "agricolmap: {}{}\n", what, flags);
     return static_cast<int>(code);
   };
   try {
     return static_cast<int>(agricolmap::run(argc, argv));
   } catch (const agricolmap::Error& error) {
-    return fail(error.what(), error.code());
+    return fail(error.what(), agricolmap::exitCodeOf(error.kind()),
+                agricolmap::flagsFor(error.remedy()));
   } catch (const std::bad_alloc&) {
     return fail("out of memory; crop the clouds or enlarge grid.cell", ExitCode::kInternal);
   } catch (const std::exception& error) {

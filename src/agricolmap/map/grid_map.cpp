@@ -211,10 +211,12 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
   const Bands bands = sortIntoBands(cloud, map.frame, Locator(map.frame, levelled_from_local));
   map.points = bands.points.size();
   if (map.points == 0) {
-    throw InputError(fmt::format(
-        "{}: no point lies in the window that the initial guess gives; check --prior and the "
-        "offset.xyz files (do both clouds use the same coordinate system?)",
-        cloud.name));
+    throw InputError(
+        fmt::format(
+            "{}: no point lies in the window that the initial guess gives; do both clouds use the "
+            "same coordinate system?",
+            cloud.name),
+        Remedy::kInitialGuess);
   }
   map.weight = Raster<float>(rows, cols);
   map.height = Raster<float>(rows, cols);

@@ -205,10 +205,12 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
     result = levelUnderCanopy(result, points, centre, options);
   }
   if (result.tilt > limit) {
-    throw InputError(fmt::format(
-        "{}: its ground plane is tilted by {:.0f} deg (level.max_tilt_deg is {}); z must point up: "
-        "give the cloud's attitude in offset.xyz or --prior",
-        cloud.name, result.tilt * 180.0 / std::numbers::pi, options.max_tilt_deg));
+    throw InputError(
+        fmt::format(
+            "{}: its ground plane is tilted by {:.0f} deg (level.max_tilt_deg is {}); z must point "
+            "up: give the cloud's attitude in the initial guess",
+            cloud.name, result.tilt * 180.0 / std::numbers::pi, options.max_tilt_deg),
+        Remedy::kInitialGuess);
   }
   result.levelled_from_guess =
       Eigen::Translation3d(0.0, 0.0, -centre.z()) * result.levelled_from_guess;

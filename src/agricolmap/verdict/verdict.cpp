@@ -181,7 +181,7 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
     const double most = 1.0 / (1.0 + static_cast<double>(rivals));
     return {Status::kAmbiguous,
             {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
-                         "a better initial guess (--prior, --prior-sigma) can",
+                         "a better initial guess can",
                          rivals + 1)},
             std::min(all, most),
             std::min(plane, most)};
