@@ -18,6 +18,7 @@ namespace agricolmap {
 struct Globals {
   int threads = 0;
   int seed = 1;
+  bool seed_given = false;
   int verbose = 0;
   bool quiet = false;
   bool overwrite = false;

@@ -51,7 +51,7 @@ ExitCode run(int argc, char** argv) {
   app.fallthrough();
   app.add_option("--threads", globals.threads, "Number of threads, 0: all cores [0]")
       ->check(CLI::Range(0, 1024));
-  app.add_option("--seed", globals.seed, "Seed of everything random [1]");
+  const CLI::Option* seed = app.add_option("--seed", globals.seed, "Seed of everything random [1]");
   app.add_flag("-v,--verbose", globals.verbose, "Say more on stderr");
   app.add_flag("-q,--quiet", globals.quiet, "Say nothing but errors");
   app.add_flag("--overwrite", globals.overwrite, "Replace results that exist");
@@ -61,7 +61,10 @@ ExitCode run(int argc, char** argv) {
       addImportCommand(app, globals),   addInfoCommand(app, globals),
       addDocumentCommand(app, globals)};
   try {
-    app.parse(argc, argv);
+    // The parser takes them from the end.
+    std::vector<std::string> words;
+    for (int i = argc - 1; i > 0; --i) words.push_back(spelledWithDashes(argv[i]));
+    app.parse(std::move(words));
   } catch (const CLI::RequiredError& error) {
     // CLI11 would only say that a verb is missing.
     const std::vector<std::string> words = app.remaining();
@@ -73,6 +76,7 @@ ExitCode run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage;
   }
+  globals.seed_given = seed->count() > 0;
   setUpLogging(globals);
   requireCpu();
   installInterruptHandler();

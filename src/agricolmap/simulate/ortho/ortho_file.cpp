@@ -17,8 +17,10 @@ namespace agricolmap::simulate {
 
 void listOptions(OptionTable& table, OrthoFileOptions& options) {
   listOptions(table, options.raster);
-  table.number("gsd", options.gsd, 0.0, 0.1, "m",
-               "size of a pixel of the mosaic; 0: as its georeference says");
+  table
+      .number("gsd", options.gsd, 0.0, 0.1, "m",
+              "size of a pixel of the mosaic; 0: as its georeference says")
+      .basic();
 }
 
 namespace {
