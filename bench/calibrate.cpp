@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "../apps/agricolmap/exit_code.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
@@ -113,7 +114,7 @@ int main(int argc, char** argv) {
     return agricolmap::campaign::run(argc, argv);
   } catch (const agricolmap::Error& error) {
     fmt::print(stderr, "agricolmap_calibrate: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return static_cast<int>(agricolmap::exitCodeOf(error.kind()));
   } catch (const std::exception& error) {
     fmt::print(stderr, "agricolmap_calibrate: {}\n", error.what());
     return static_cast<int>(agricolmap::ExitCode::kInternal);

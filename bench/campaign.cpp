@@ -10,6 +10,7 @@
 #include <map>
 #include <vector>
 
+#include "../apps/agricolmap/exit_code.hpp"
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/error.hpp"
@@ -338,7 +339,7 @@ int main(int argc, char** argv) {
     return static_cast<int>(ExitCode::kInterrupted);
   } catch (const agricolmap::Error& error) {
     fmt::print(stderr, "agricolmap_campaign: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return static_cast<int>(agricolmap::exitCodeOf(error.kind()));
   } catch (const std::exception& error) {
     fmt::print(stderr, "agricolmap_campaign: {}\n", error.what());
     return static_cast<int>(ExitCode::kInternal);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "../apps/agricolmap/exit_code.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
@@ -59,7 +60,7 @@ int main(int argc, char** argv) {
     return agricolmap::campaign::run(argc, argv);
   } catch (const agricolmap::Error& error) {
     fmt::print(stderr, "agricolmap_plots: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return static_cast<int>(agricolmap::exitCodeOf(error.kind()));
   } catch (const std::exception& error) {
     fmt::print(stderr, "agricolmap_plots: {}\n", error.what());
     return static_cast<int>(agricolmap::ExitCode::kInternal);

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "../apps/agricolmap/exit_code.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/stopwatch.hpp"
@@ -92,13 +93,13 @@ ProcessCost runProgram(const std::vector<std::string>& command,
   int status = 0;
   rusage usage{};
   while (::wait4(pid, &status, 0, &usage) < 0) {
-    if (errno != EINTR) throw Error(ExitCode::kInternal, "wait4 failed");
+    if (errno != EINTR) throw Error(ErrorKind::kInternal, "wait4 failed");
   }
   const ProcessCost cost = {watch.seconds(), secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime),
                             static_cast<double>(usage.ru_maxrss) / 1024.0};
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (std::find(accepted_codes.begin(), accepted_codes.end(), code) == accepted_codes.end()) {
-    throw Error(ExitCode::kInternal,
+    throw Error(ErrorKind::kInternal,
                 fmt::format("'{}' ended with code {}", fmt::join(command, " "), code));
   }
   return cost;
@@ -257,7 +258,7 @@ int main(int argc, char** argv) {
     return agricolmap::run(argc, argv);
   } catch (const agricolmap::Error& error) {
     fmt::print(stderr, "agricolmap_time_files: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return static_cast<int>(agricolmap::exitCodeOf(error.kind()));
   } catch (const std::exception& error) {
     fmt::print(stderr, "agricolmap_time_files: {}\n", error.what());
     return static_cast<int>(agricolmap::ExitCode::kInternal);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../apps/agricolmap/exit_code.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
@@ -270,7 +271,7 @@ int main(int argc, char** argv) {
   } catch (const agricolmap::Interrupted&) {
     return fail("interrupted; the same command goes on from here", ExitCode::kInterrupted);
   } catch (const agricolmap::Error& error) {
-    return fail(error.what(), error.code());
+    return fail(error.what(), agricolmap::exitCodeOf(error.kind()));
   } catch (const std::exception& error) {
     return fail(error.what(), ExitCode::kInternal);
   }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "../apps/agricolmap/exit_code.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -216,7 +217,7 @@ int main(int argc, char** argv) {
   try {
     return static_cast<int>(agricolmap::compare::run(argc, argv));
   } catch (const agricolmap::Error& error) {
-    return fail(error.what(), error.code());
+    return fail(error.what(), agricolmap::exitCodeOf(error.kind()));
   } catch (const std::bad_alloc&) {
     return fail("out of memory", ExitCode::kInternal);
   } catch (const std::exception& error) {

@@ -30,12 +30,92 @@ TEST_F(OptionsTest, FlagsWinOverTheFileAndTheFileOverThePreset) {
 }
 
 TEST_F(OptionsTest, EveryPresetCanBeWrittenAndReadBack) {
-  for (const std::string preset : {"default", "paper"}) {
-    const ProgramResult dumped = runAgricolmap({"register", "--preset", preset, "--dump-config"});
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--preset", "default"},
+                                               {"--preset", "paper"},
+                                               {"--preset", "paper-literal"},
+                                               {"--geometry-only"},
+                                               {"--signal.term", "rgb"},
+                                               {"--association", "flow"},
+                                               {"--seed", "7"}}) {
+    std::vector<std::string> arguments = {"register", "--dump-config"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult dumped = runAgricolmap(arguments);
     ASSERT_EQ(dumped.exit_code, 0) << dumped.err;
-    const std::string file = write(preset + ".yaml", dumped.out);
+    const std::string file = write("all.yaml", dumped.out);
     EXPECT_EQ(runAgricolmap({"register", "--config", file, "--dump-config"}).out, dumped.out);
   }
+}
+
+TEST_F(OptionsTest, TheSeedOfTheFileGivesWayToTheFlag) {
+  const std::string file = write("seed.yaml", "seed: 3\n");
+  for (const std::string verb : {"register", "simulate"}) {
+    const auto seedOf = [&](std::vector<std::string> arguments) {
+      arguments.insert(arguments.begin(), {verb, "--dump-config"});
+      const std::string out = runAgricolmap(arguments).out;
+      const std::size_t at = out.find("\nseed: ");
+      return at == std::string::npos ? out : out.substr(at + 7, out.find('\n', at + 7) - at - 7);
+    };
+    EXPECT_EQ(seedOf({}), "1");
+    EXPECT_EQ(seedOf({"--config", file}), "3");
+    EXPECT_EQ(seedOf({"--config", file, "--seed", "1"}), "1");
+  }
+}
+
+TEST_F(OptionsTest, FlagsMayBeSpelledAsKeysOfTheFile) {
+  const ProgramResult dashes =
+      runAgricolmap({"register", "--prior.heading-deg=3", "--geometry-only", "--dump-config"});
+  const ProgramResult underscores =
+      runAgricolmap({"register", "--prior.heading_deg=3", "--geometry_only", "--dump_config"});
+  EXPECT_EQ(dashes.exit_code, 0) << dashes.err;
+  EXPECT_NE(dashes.out.find("heading_deg: 3\n"), std::string::npos) << dashes.out;
+  EXPECT_EQ(underscores.out, dashes.out) << underscores.err;
+}
+
+TEST_F(OptionsTest, WhatWouldDoNothingIsRefused) {
+  const auto expectIdle = [&](const std::vector<std::string>& more, const std::string& option,
+                              const std::string& missing) {
+    std::vector<std::string> arguments = {"register", "--dump-config"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expectFailure(arguments, 2, {option, missing});
+  };
+  expectIdle({"--flow.flow.levels", "2"}, "--flow.flow.levels", "association = flow");
+  expectIdle({"--affine.least", "10"}, "--affine.least", "association = flow");
+  expectIdle({"--cpd.decay", "0.5"}, "--cpd.decay", "refine = cpd");
+  expectIdle({"--preset", "paper", "--search.cell", "0.1"}, "--search.cell",
+             "association = correlation");
+  expectIdle({"--preset", "paper", "--dense.hops", "2"}, "--dense.hops", "refine = dense");
+  expectIdle({"--preset", "paper-literal", "--flow.scale-tolerance", "0.1"},
+             "--flow.scale-tolerance", "flow.warps = true");
+  expectIdle({"--geometry-only", "--signal.term", "exg"}, "--signal.term", "geometry_only");
+  // As a flag even at its default; in a file, which may list all options, only otherwise.
+  expectIdle({"--flow.flow.levels", "3"}, "--flow.flow.levels", "association = flow");
+  const std::string usual = write("usual.yaml", "flow: {flow: {levels: 3}}\n");
+  EXPECT_EQ(runAgricolmap({"register", "--config", usual, "--dump-config"}).exit_code, 0);
+  const std::string other = write("other.yaml", "flow: {flow: {levels: 2}}\n");
+  expectIdle({"--config", other}, "flow.flow.levels = 2", "association = flow");
+  EXPECT_EQ(runAgricolmap({"register", "--config", other, "--association", "flow", "--dump-config"})
+                .exit_code,
+            0);
+  // What a preset brings along is nobody's request.
+  EXPECT_EQ(runAgricolmap({"register", "--preset", "paper-literal", "--association", "correlation",
+                           "--dump-config"})
+                .exit_code,
+            0);
+}
+
+TEST_F(OptionsTest, HelpHasWhatIsForUsersAndHelpAllTheRest) {
+  const std::string some = runAgricolmap({"register", "--help"}).out;
+  const std::string all = runAgricolmap({"register", "--help-all"}).out;
+  for (const char* basic : {"--grid.cell", "--prior.heading-deg", "--verdict.min-probability"}) {
+    EXPECT_NE(some.find(basic), std::string::npos) << basic;
+    EXPECT_NE(all.find(basic), std::string::npos) << basic;
+  }
+  for (const char* advanced : {"--dense.hop ", "--flow.describe.daisy.radius"}) {
+    EXPECT_EQ(some.find(advanced), std::string::npos) << advanced;
+    EXPECT_NE(all.find(advanced), std::string::npos) << advanced;
+  }
+  EXPECT_NE(some.find("agricolmap register --help-all"), std::string::npos) << some;
+  EXPECT_EQ(all.find("more options"), std::string::npos);
 }
 
 TEST_F(OptionsTest, AConfigurationIsObeyed) {

@@ -164,13 +164,16 @@ TEST_F(RegisterTest, UsesHeightsAloneWhenAsked) {
   const std::string ugv =
       write("grey.ply", plyBytes(pointsOfPly(contentOf(files.ugv())), /*colours=*/false));
   const ProgramResult result =
-      runAgricolmap({"register", files.uav(), ugv, "--prior", files.prior(), "--geometry_only",
+      runAgricolmap({"register", files.uav(), ugv, "--prior", files.prior(), "--geometry-only",
                      "-o", inFolder("out")});
   // Heights of young beets may not be enough; an answer that is accepted must be right.
   ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 10) << result.err;
   if (result.exit_code == 0) {
     EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
   }
+  // The report says what was compared.
+  const nlohmann::json report = jsonOf(inFolder("out/registration.json"));
+  EXPECT_EQ(report.at("options").at("signal").at("term"), "height");
 }
 
 }  // namespace

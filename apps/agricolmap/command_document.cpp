@@ -22,9 +22,13 @@ ExitCode runDocument() {
   fmt::print(
       "# Options\n\n"
       "<!-- Written by `agricolmap document-options`; a test compares. -->\n\n"
-      "Every option is a flag (`--grid.cell 0.02`) and, for `register` and `simulate`, a key of "
-      "the YAML\nfile given with `--config` (`grid:` and below it `cell: 0.02`). Flags win over "
-      "the file, the file over\nthe preset. `--dump-config` prints what is in force.\n");
+      "Every option is a flag (`--grid.cell 0.02`; `-` stands for `_`: `--prior.heading-deg 3`) "
+      "and, "
+      "for\n`register` and `simulate`, a key of the YAML file given with `--config` (`grid:` and "
+      "below it\n`cell: 0.02`). Flags win over the file, the file over the preset. `--dump-config` "
+      "prints what is in\nforce. `--help` has the options for users, `--help-all` has all. What "
+      "would "
+      "do nothing is refused: a\nflag always, a value in a file where it is not the default.\n");
   printSection<pipeline::RegistrationOptions>(
       "register",
       "Defaults are those of `--preset default`; `--preset paper` "
@@ -35,7 +39,7 @@ ExitCode runDocument() {
   printSection<simulate::OrthoFileOptions>(
       "simulate --ortho",
       "How an orthomosaic is read; flags only, beside `--dsm`, `--dtm`, `--window` and "
-      "`--row_heading`. Of the\noptions above, `field.width` and `field.height` limit the part of "
+      "`--row-heading`. Of the\noptions above, `field.width` and `field.height` limit the part of "
       "the mosaic that is taken,\n`field.random_row_heading` stands for a measured heading of the "
       "rows, and `field.relief`, `field.slope`,\n`field.clods` and `field.plant_size` are used "
       "where there is no surface model. The rest of `field.*` and\n`views.weeds_pulled` do nothing "

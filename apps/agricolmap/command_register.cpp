@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "agricolmap/config/json.hpp"
-#include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -18,7 +17,7 @@
 #include "agricolmap/report/json/registration_json.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 #include "common.hpp"
-#include "option_flags.hpp"
+#include "register_options.hpp"
 
 namespace agricolmap {
 namespace {
@@ -28,57 +27,11 @@ struct RegisterArguments {
   std::string moving;
   std::string output;
   std::string prior;
-  std::string config;
-  std::string preset = "default";
-  std::string prior_sigma;
-  bool scale_unknown = false;
   bool dump_config = false;
   bool keep_rejected = false;
   bool no_pictures = false;
-  OptionFlags flags;
+  RegisterOptions options;
 };
-
-/// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, each value within its option's limits.
-void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const OptionTable& table) {
-  if (text == "none") {
-    const bool scale_unknown = prior.scale_unknown;
-    prior = PriorUncertainty::none();
-    prior.scale_unknown = scale_unknown;
-    return;
-  }
-  std::vector<std::string> parts = CLI::detail::split(text, ',');
-  for (std::string& part : parts) CLI::detail::trim(part);
-  double scale = 0.0;
-  if (parts.size() != 3 || !CLI::detail::lexical_cast(parts[2], scale)) {
-    throw UsageError(fmt::format(
-        "--prior-sigma {}: is neither T_M,HEADING_DEG,SCALE_PERCENT (such as 5,11.5,30) nor 'none'",
-        text));
-  }
-  const auto set = [&](const char* key, const std::string& value) {
-    try {
-      config::parseOption(*table.find(key), value)();
-    } catch (const UsageError& error) {
-      throw UsageError(fmt::format("--prior-sigma {}: {}", text, error.what()));
-    }
-  };
-  set("prior.translation", parts[0]);
-  set("prior.heading_deg", parts[1]);
-  set("prior.scale", fmt::format("{:.17g}", scale / 100.0));
-}
-
-/// Defaults, then the preset, then the configuration file, then flags.
-pipeline::RegistrationOptions chosenOptions(const RegisterArguments& arguments,
-                                            const Globals& globals) {
-  pipeline::RegistrationOptions options = pipeline::preset(arguments.preset);
-  options.flow.seed = globals.seed;
-  options.affine.seed = globals.seed;
-  OptionTable table = optionTable(options);
-  if (!arguments.config.empty()) config::loadYaml(arguments.config, table);
-  if (!arguments.prior_sigma.empty()) applyPriorSigma(arguments.prior_sigma, options.prior, table);
-  if (arguments.scale_unknown) options.prior.scale_unknown = true;
-  arguments.flags.apply(table);
-  return options;
-}
 
 struct LoadedPair {
   Cloud fixed;
@@ -98,6 +51,9 @@ LoadedPair load(const RegisterArguments& arguments) {
 void printSummary(const pipeline::Registration& result, const std::string& directory) {
   fmt::print("{}\n", toString(result.verdict.status));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
+  if (result.verdict.status == verdict::Status::kAmbiguous) {
+    fmt::print("  (the guess: --prior, --prior-sigma)\n");
+  }
   if (result.transform) {
     const pipeline::Transform& transform = *result.transform;
     fmt::print(
@@ -137,10 +93,9 @@ report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments,
                                           const Globals& globals, const OptionTable& table) {
   report::RegistrationReportInfo info;
   info.version = AGRICOLMAP_VERSION;
-  info.seed = static_cast<std::uint64_t>(globals.seed);
   info.threads = globals.threads;
   info.command_line = commandText(globals.command_line);
-  info.preset = arguments.preset;
+  info.preset = arguments.options.preset();
   info.options = config::toJson(table);
   return info;
 }
@@ -166,7 +121,7 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
 }
 
 ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals) {
-  pipeline::RegistrationOptions options = chosenOptions(arguments, globals);
+  pipeline::RegistrationOptions options = arguments.options.chosen(globals);
   const OptionTable table = optionTable(options);
   if (arguments.dump_config) {
     std::cout << config::dumpYaml(table);
@@ -180,6 +135,7 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   Progress progress(globals);
   Monitor monitor(globals.stop, [&](Stage stage) { progress.step(nameOf(stage)); });
   report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
+  info.seed = static_cast<std::uint64_t>(options.seed);
   info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
   const LoadedPair pair = monitor.run(Stage::kRead, [&] { return load(arguments); });
   warnOfDropped(pair.fixed);
@@ -217,22 +173,12 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   command->add_option("--prior", arguments->prior,
                       "Initial guess: 4x4 text, row-major, moving -> fixed file coordinates. "
                       "Default: offset.xyz beside each cloud, else coordinates as they stand");
-  command->add_option(
-      "--prior-sigma", arguments->prior_sigma,
-      "How wrong the initial guess may be: T_M,HEADING_DEG,SCALE_PERCENT, or 'none' "
-      "for no guess: any place and heading [5,11.5,30]");
-  command->add_flag("--scale-unknown", arguments->scale_unknown,
-                    "MOVING is in unknown units: find its overall scale, too, a factor from 0.1 to "
-                    "10");
-  command->add_option("--preset", arguments->preset, "default, paper or paper-literal [default]");
-  command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");
   command->add_flag("--keep-rejected", arguments->keep_rejected,
                     "Write transform.txt and aligned.ply of a rejected registration, too");
   command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG pictures");
-  pipeline::RegistrationOptions defaults;
-  arguments->flags.addTo(*command, optionTable(defaults), "Options of the pipeline");
+  arguments->options.addTo(*command);
   return {command, [arguments, &globals] { return runRegister(*arguments, globals); }};
 }
 

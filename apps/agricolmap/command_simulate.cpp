@@ -37,12 +37,12 @@ simulate::SimulationOptions chosenOptions(const SimulateArguments& arguments,
   const auto fill = [&](simulate::SimulationOptions& options) {
     OptionTable table = optionTable(options);
     if (!arguments.config.empty()) config::loadYaml(arguments.config, table);
+    if (globals.seed_given) options.seed = globals.seed;
     arguments.flags.apply(table);
   };
   simulate::SimulationOptions first;
   fill(first);
   simulate::SimulationOptions options = simulate::cropPreset(first.crop);
-  options.seed = globals.seed;
   fill(options);
   return options;
 }

@@ -25,6 +25,31 @@ void Progress::step(std::string_view what) {
   spdlog::debug("{}", what);
 }
 
+std::string flagsFor(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::kHeightsAlone:
+      return " (--geometry-only)";
+    case Remedy::kInitialGuess:
+      return " (--prior, or offset.xyz beside the cloud)";
+    case Remedy::kNarrowerGuess:
+      return " (--prior-sigma with a translation and no --scale-unknown, or --association "
+             "correlation)";
+    case Remedy::kOverwrite:
+      return " (--overwrite)";
+    case Remedy::kPixelSize:
+      return " (--gsd)";
+    case Remedy::kSurfaceModel:
+      return " (--dsm)";
+    case Remedy::kRowHeading:
+      return " (--row-heading, --window, --seed)";
+    case Remedy::kWindow:
+      return " (--window)";
+    case Remedy::kNone:
+      break;
+  }
+  return {};
+}
+
 Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
                              const std::filesystem::path& moving, const std::string& prior_file,
                              std::string& source) {

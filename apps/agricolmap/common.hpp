@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
-#include "agricolmap/core/error.hpp"
+#include "exit_code.hpp"
 
 namespace agricolmap {
 
@@ -19,6 +19,7 @@ namespace agricolmap {
 struct Globals {
   int threads = 0;
   int seed = 1;
+  bool seed_given = false;
   int verbose = 0;
   bool quiet = false;
   bool overwrite = false;
@@ -52,6 +53,9 @@ class Progress {
  private:
   bool active_;
 };
+
+/// The flags that are this remedy, as ` (--overwrite)`; empty where there are none.
+std::string flagsFor(Remedy remedy);
 
 /// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside
 /// each cloud (one that has none stands in world coordinates); else identity. Says which in

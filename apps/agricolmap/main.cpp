@@ -5,11 +5,14 @@
 
 #include <CLI/CLI.hpp>
 #include <new>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "common.hpp"
+#include "option_flags.hpp"
 #include "support/signal_stop.hpp"
 
 namespace agricolmap {
@@ -23,7 +26,7 @@ constexpr const char* kFooter =
 void requireCpu() {
 #if defined(__x86_64__) && defined(__AVX2__)
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) {
-    throw Error(ExitCode::kInternal,
+    throw Error(ErrorKind::kInternal,
                 "this processor has no AVX2/FMA; build with -DAGRICOLMAP_ARCH= for it");
   }
 #endif
@@ -49,7 +52,7 @@ ExitCode run(int argc, char** argv) {
   app.fallthrough();
   app.add_option("--threads", globals.threads, "Number of threads, 0: all cores [0]")
       ->check(CLI::Range(0, 1024));
-  app.add_option("--seed", globals.seed, "Seed of everything random [1]");
+  const CLI::Option* seed = app.add_option("--seed", globals.seed, "Seed of everything random [1]");
   app.add_flag("-v,--verbose", globals.verbose, "Say more on stderr");
   app.add_flag("-q,--quiet", globals.quiet, "Say nothing but errors");
   app.add_flag("--overwrite", globals.overwrite, "Replace results that exist");
@@ -59,7 +62,10 @@ ExitCode run(int argc, char** argv) {
       addImportCommand(app, globals),   addInfoCommand(app, globals),
       addDocumentCommand(app, globals)};
   try {
-    app.parse(argc, argv);
+    // The parser takes them from the end.
+    std::vector<std::string> words;
+    for (int i = argc - 1; i > 0; --i) words.push_back(spelledWithDashes(argv[i]));
+    app.parse(std::move(words));
   } catch (const CLI::RequiredError& error) {
     // CLI11 would only say that a verb is missing.
     const std::vector<std::string> words = app.remaining();
@@ -71,6 +77,7 @@ ExitCode run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage;
   }
+  globals.seed_given = seed->count() > 0;
   setUpLogging(globals);
   requireCpu();
   const SignalStop signals;
@@ -88,14 +95,15 @@ ExitCode run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using agricolmap::ExitCode;
-  const auto fail = [](const char* what, ExitCode code) {
-    fmt::print(stderr, "agricolmap: {}\n", what);
+  const auto fail = [](const char* what, ExitCode code, const std::string& flags = "") {
+    fmt::print(stderr, "agricolmap: {}{}\n", what, flags);
     return static_cast<int>(code);
   };
   try {
     return static_cast<int>(agricolmap::run(argc, argv));
   } catch (const agricolmap::Error& error) {
-    return fail(error.what(), error.code());
+    return fail(error.what(), agricolmap::exitCodeOf(error.kind()),
+                agricolmap::flagsFor(error.remedy()));
   } catch (const std::bad_alloc&) {
     return fail("out of memory; crop the clouds or enlarge grid.cell", ExitCode::kInternal);
   } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "agricolmap/config/text.hpp"
 
@@ -14,21 +15,68 @@ std::string helpOf(const OptionField& field) {
                      field.unit.empty() ? "" : " ", field.unit, config::limitsText(field));
 }
 
+std::string headingOf(const OptionTable& table, const OptionField& field,
+                      const std::string& otherwise) {
+  const std::string title = table.titleOf(field.group());
+  return title.empty() ? otherwise : fmt::format("{}: {}", field.group(), title);
+}
+
+/// Options that the help leaves out for now, with the heading that they will have.
+using Hidden = std::vector<std::pair<CLI::Option*, std::string>>;
+
+void addHelpAll(CLI::App& app, const std::shared_ptr<Hidden>& hidden) {
+  app.add_flag_callback(
+      "--help-all",
+      [hidden] {
+        for (const auto& [option, heading] : *hidden) option->group(heading);
+        hidden->clear();
+        throw CLI::CallForHelp();
+      },
+      "Print this help message with all options and exit");
+  app.footer([hidden, verb = app.get_name()] {
+    if (hidden->empty()) return std::string();
+    return fmt::format(
+        "{} more options, for those who change how a stage works: agricolmap {} --help-all\n"
+        "or docs/options.md; --dump-config writes them all into a file.\n",
+        hidden->size(), verb);
+  });
+}
+
 }  // namespace
 
-void OptionFlags::addTo(CLI::App& app, const OptionTable& table, const std::string& group,
+std::string flagOf(std::string_view path) {
+  std::string flag = "--" + std::string(path);
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+std::string spelledWithDashes(std::string_view argument) {
+  std::string text(argument);
+  if (!text.starts_with("--")) return text;
+  const std::size_t name = std::min(text.find('='), text.size());
+  std::replace(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(name), '_', '-');
+  return text;
+}
+
+void OptionFlags::addTo(CLI::App& app, const OptionTable& table, const std::string& heading,
                         const std::vector<std::string>& left_out) {
+  const bool levels = config::hasLevels(table);
+  const auto hidden = std::make_shared<Hidden>();
   for (const OptionField& field : table.fields()) {
     if (std::find(left_out.begin(), left_out.end(), field.path) != left_out.end()) continue;
     auto text = std::make_shared<std::string>();
     texts_[field.path] = text;
-    CLI::Option* option = app.add_option("--" + field.path, *text, helpOf(field));
-    option->group(group);
+    CLI::Option* option = app.add_option(flagOf(field.path), *text, helpOf(field));
+    const std::string group = headingOf(table, field, heading);
+    const bool hide = levels && field.level == OptionLevel::kAdvanced;
+    option->group(hide ? "" : group);
+    if (hide) hidden->emplace_back(option, group);
     if (std::holds_alternative<bool*>(field.value)) {
-      // A flag may stand alone: `--geometry_only` means true.
+      // A flag may stand alone: `--geometry-only` means true.
       option->expected(0, 1)->default_str("true");
     }
   }
+  if (levels) addHelpAll(app, hidden);
 }
 
 void OptionFlags::apply(const OptionTable& table) const {
@@ -44,9 +92,12 @@ bool OptionFlags::given(const std::string& path) const {
   return found != texts_.end() && !found->second->empty();
 }
 
-bool OptionFlags::anyGiven() const {
-  return std::any_of(texts_.begin(), texts_.end(),
-                     [](const auto& entry) { return !entry.second->empty(); });
+std::vector<std::string> OptionFlags::given() const {
+  std::vector<std::string> paths;
+  for (const auto& [path, text] : texts_) {
+    if (!text->empty()) paths.push_back(path);
+  }
+  return paths;
 }
 
 }  // namespace agricolmap

@@ -43,7 +43,7 @@ void OrthoArguments::addTo(CLI::App& command) {
       ->expected(4)
       ->group(kGroup);
   command
-      .add_option("--row_heading", row_heading_,
+      .add_option("--row-heading", row_heading_,
                   "DEGREES counter-clockwise from east in which the rows run; without: measured")
       ->expected(1)
       ->check(CLI::Range(-360.0, 360.0))
@@ -55,16 +55,16 @@ void OrthoArguments::addTo(CLI::App& command) {
 bool OrthoArguments::given(const OptionFlags& flags) const {
   if (ortho_.empty()) {
     if (!dsm_.empty() || !dtm_.empty() || !window_.empty() || !row_heading_.empty() ||
-        flags_.anyGiven()) {
+        !flags_.given().empty()) {
       throw UsageError(
-          "--dsm, --dtm, --window, --row_heading, --gsd, --bands and --black_is_nodata describe an "
+          "--dsm, --dtm, --window, --row-heading, --gsd, --bands and --black-is-nodata describe an "
           "orthomosaic; give it, too: --ortho FILE");
     }
     return false;
   }
   const auto refuse = [&](const char* path, const char* why) {
     if (flags.given(path)) {
-      throw UsageError(fmt::format("--{} does nothing with --ortho: {}", path, why));
+      throw UsageError(fmt::format("{} does nothing with --ortho: {}", flagOf(path), why));
     }
   };
   for (const char* path : kLayout) refuse(path, "the plants are those of the mosaic");
@@ -116,7 +116,7 @@ std::string OrthoArguments::provenance() const {
   simulate::OrthoFileOptions shown = file_options_;
   const OptionTable table = optionTable(shown);
   for (const OptionField& field : table.fields()) {
-    text += fmt::format(" --{} {}", field.path, config::optionText(field));
+    text += fmt::format(" {} {}", flagOf(field.path), config::optionText(field));
   }
   std::replace(text.begin(), text.end(), '\n', ' ');  // of a file's name: still a comment
   return text + "\n# with the options below; heights and plants are the mosaic's, not field.*\n";

@@ -21,9 +21,8 @@ class CpdAffine : public Method {
     const auto most = static_cast<std::size_t>(options_.max_points);
     const PeerPoints points = makePeerPoints(maps, maps.space.uncertainty.translation + 1.0,
                                              4 * most, most, outcome.times);
-    const paper::CpdResult result = outcome.times.run("cpd", [&] {
-      return paper::refineByCpd(points.fixed, points.moving, {}, options_, maps.space.scale_axes);
-    });
+    const paper::CpdResult result = outcome.times.run(
+        "cpd", [&] { return paper::refineByCpd(points.fixed, points.moving, {}, options_); });
     if (!result.usable()) {
       outcome.why = fmt::format("no registration: {}", toString(result.status));
       return;

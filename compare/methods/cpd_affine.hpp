@@ -13,9 +13,8 @@ namespace agricolmap::compare {
 /// kernel and the speed, which a strip in a larger map needs.
 inline paper::CpdOptions peerCpdOptions() {
   paper::CpdOptions options;
-  options.model = paper::CpdModel::kAffine;  // the article's affine variant
-  options.start_weight = 0.0;                // the article knows no pull towards the start
-  options.max_motion = 20.0;                 // nor a limit to the motion
+  options.start_weight = 0.0;  // the article knows no pull towards the start
+  options.max_motion = 20.0;   // nor a limit to the motion
   return options;
 }
 

@@ -187,6 +187,38 @@ TEST(Json, NestsGroupsInOrder) {
       R"({"fast":true,"grid":{"cell":0.02,"leaf":{"rate":0.25},"exg":"chromatic"},"count":3})");
 }
 
+/// One option for users, one that is not.
+struct MixedOptions {
+  double near = 1.0;
+  GridLike grid;
+};
+void listOptions(OptionTable& table, MixedOptions& o) {
+  table.number("near", o.near, 0.0, 2.0, "m", "what is near").basic();
+  table.group("grid", o.grid, "the grid");
+}
+
+TEST(Levels, AreToldApartWhereThereAreBoth) {
+  AllOptions plain;
+  EXPECT_FALSE(hasLevels(optionTable(plain)));
+  MixedOptions options;
+  const OptionTable table = optionTable(options);
+  EXPECT_TRUE(hasLevels(table));
+  EXPECT_THAT(dumpYaml(table), HasSubstr("# 0 to 2 m; what is near\nnear: 1\n"));
+  EXPECT_THAT(dumpYaml(table), HasSubstr("# advanced; 0.005 to 1 m; side of a cell\n"));
+  const std::string text = toMarkdown(table);
+  EXPECT_EQ(text.find("### For users"), 0U);
+  EXPECT_THAT(text, HasSubstr("### All: grid, the grid\n"));
+  EXPECT_LT(text.find("| `near`"), text.find("### All"));
+  EXPECT_GT(text.find("| `grid.cell`"), text.find("### All: grid"));
+}
+
+TEST(Yaml, NamesWhatItSet) {
+  AllOptions options;
+  OptionTable table = optionTable(options);
+  EXPECT_THAT(loadYamlText("grid: {leaf: {rate: 1}}\ncount: 3", "my.yaml", table),
+              testing::UnorderedElementsAre("grid.leaf.rate", "count"));
+}
+
 TEST(Markdown, IsATableWithOneRowPerOption) {
   AllOptions options;
   const std::string text = toMarkdown(optionTable(options));

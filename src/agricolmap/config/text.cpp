@@ -110,6 +110,12 @@ std::function<void()> parseOption(const OptionField& field, std::string_view tex
   return [set = choice.set, value = static_cast<int>(found - choice.names.begin())] { set(value); };
 }
 
+bool hasLevels(const OptionTable& table) {
+  const std::vector<OptionField>& fields = table.fields();
+  return std::any_of(fields.begin(), fields.end(),
+                     [&](const OptionField& field) { return field.level != fields.front().level; });
+}
+
 std::string closestPath(const OptionTable& table, std::string_view path) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, path.size() / 3) + 1;

@@ -19,6 +19,9 @@ std::string limitsText(const OptionField& field);
 /// caller can check everything before changing anything. Throws UsageError naming the option.
 std::function<void()> parseOption(const OptionField& field, std::string_view text);
 
+/// Whether the table has options of both levels, so that it helps to tell them apart.
+bool hasLevels(const OptionTable& table);
+
 /// The path that was most likely meant by an unknown one; empty when none is near.
 std::string closestPath(const OptionTable& table, std::string_view path);
 

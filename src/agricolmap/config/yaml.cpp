@@ -30,8 +30,12 @@ class Loader {
       fail(lineOf(root), "expected a map of options, such as 'grid: {cell: 0.02}'");
     readMap(root, "");
   }
-  void apply() const {
+  /// Sets what was read; returns its paths.
+  std::vector<std::string> apply() const {
     for (const std::function<void()>& setter : setters_) setter();
+    std::vector<std::string> paths;
+    for (const auto& [path, line] : lines_) paths.push_back(path);
+    return paths;
   }
 
  private:
@@ -99,7 +103,7 @@ std::string oneLine(std::string text) {
 
 }  // namespace
 
-void loadYaml(const std::filesystem::path& file, OptionTable& table) {
+std::vector<std::string> loadYaml(const std::filesystem::path& file, OptionTable& table) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   // A folder opens like a file and only fails on reading; of an empty file nothing can be read.
@@ -107,10 +111,11 @@ void loadYaml(const std::filesystem::path& file, OptionTable& table) {
       (stream.peek() != std::ifstream::traits_type::eof() && !(text << stream.rdbuf()))) {
     throw InputError(fmt::format("{}: cannot read this options file", file.string()));
   }
-  loadYamlText(text.str(), file.string(), table);
+  return loadYamlText(text.str(), file.string(), table);
 }
 
-void loadYamlText(const std::string& text, const std::string& name, OptionTable& table) {
+std::vector<std::string> loadYamlText(const std::string& text, const std::string& name,
+                                      OptionTable& table) {
   Loader loader(name, table);
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
@@ -125,12 +130,13 @@ void loadYamlText(const std::string& text, const std::string& name, OptionTable&
     throw UsageError(
         fmt::format("{}:{}: not valid YAML: {}", name, error.mark.line + 1, error.msg));
   }
-  loader.apply();
+  return loader.apply();
 }
 
 std::string dumpYaml(const OptionTable& table) {
   std::string out;
   std::vector<std::string> open;  // groups the last line was in
+  const bool levels = hasLevels(table);
   for (const OptionField& field : table.fields()) {
     std::vector<std::string> groups = partsOf(field.path);
     const std::string name = groups.back();
@@ -141,8 +147,9 @@ std::string dumpYaml(const OptionTable& table) {
     }
     open = groups;
     const std::size_t indent = 2 * groups.size();
-    out += fmt::format("{:{}}# {}; {}\n{:{}}{}: {}\n", "", indent, limitsText(field),
-                       oneLine(field.help), "", indent, name, optionText(field));
+    const bool mark = levels && field.level == OptionLevel::kAdvanced;
+    out += fmt::format("{:{}}# {}{}; {}\n{:{}}{}: {}\n", "", indent, mark ? "advanced; " : "",
+                       limitsText(field), oneLine(field.help), "", indent, name, optionText(field));
   }
   return out;
 }

@@ -6,51 +6,66 @@
 
 namespace agricolmap {
 
-/// Exit codes of the command line, one per kind of outcome. 10 and above: the program worked and
-/// its answer is not "accepted".
-enum class ExitCode : int {
-  kOk = 0,
-  kInternal = 1,
-  kUsage = 2,
-  kBadInput = 3,
-  kOutput = 4,
-  kRejected = 10,
-  kAmbiguous = 11,
-  kInterrupted = 130,
+/// What kind of error. A program maps it to its exit codes.
+enum class ErrorKind {
+  kInternal,
+  kUsage,
+  kInput,
+  kOutput,
+  kInterrupted,
+};
+
+/// What would mend it, for callers with words of their own for that: a program's flags.
+enum class Remedy {
+  kNone,  ///< none but what the message says
+  kHeightsAlone,
+  kInitialGuess,
+  kNarrowerGuess,
+  kOverwrite,
+  kPixelSize,
+  kSurfaceModel,
+  kRowHeading,
+  kWindow,
 };
 
 /// Base of all errors thrown on purpose. `what()` names the place and the remedy.
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  ExitCode code() const { return code_; }
+  Error(ErrorKind kind, const std::string& message, Remedy remedy = Remedy::kNone)
+      : std::runtime_error(message), kind_(kind), remedy_(remedy) {}
+  ErrorKind kind() const { return kind_; }
+  Remedy remedy() const { return remedy_; }
 
  private:
-  ExitCode code_;
+  ErrorKind kind_;
+  Remedy remedy_;
 };
 
 /// Options or arguments that make no sense.
 class UsageError : public Error {
  public:
-  explicit UsageError(const std::string& message) : Error(ExitCode::kUsage, message) {}
+  explicit UsageError(const std::string& message, Remedy remedy = Remedy::kNone)
+      : Error(ErrorKind::kUsage, message, remedy) {}
 };
 
 /// A file or cloud that cannot be used: missing, truncated, lying, empty, degenerate.
 class InputError : public Error {
  public:
-  explicit InputError(const std::string& message) : Error(ExitCode::kBadInput, message) {}
+  explicit InputError(const std::string& message, Remedy remedy = Remedy::kNone)
+      : Error(ErrorKind::kInput, message, remedy) {}
 };
 
 /// A result that cannot be written: no permission, disk full, exists already.
 class OutputError : public Error {
  public:
-  explicit OutputError(const std::string& message) : Error(ExitCode::kOutput, message) {}
+  explicit OutputError(const std::string& message, Remedy remedy = Remedy::kNone)
+      : Error(ErrorKind::kOutput, message, remedy) {}
 };
 
-/// The user asked to stop (SIGINT, SIGTERM).
+/// The caller asked to stop.
 class Interrupted : public Error {
  public:
-  Interrupted() : Error(ExitCode::kInterrupted, "interrupted; nothing was written") {}
+  Interrupted() : Error(ErrorKind::kInterrupted, "interrupted; nothing was written") {}
 };
 
 }  // namespace agricolmap

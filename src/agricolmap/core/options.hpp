@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,12 @@ struct ChoiceRef {
   std::vector<std::string> names;
 };
 
+/// Who an option is for.
+enum class OptionLevel {
+  kAdvanced,  ///< those who change how a stage works: in `--help-all`, files and documents
+  kBasic,     ///< users: in `--help`, too
+};
+
 /// One option: its path (`grid.cell`), a reference to its value, and what users need to know.
 struct OptionField {
   std::string path;
@@ -27,30 +34,40 @@ struct OptionField {
   double high = 0.0;
   std::string unit;
   std::string help;
+  OptionLevel level = OptionLevel::kAdvanced;
+
+  /// Said where the option is listed: `table.number("cell", ...).basic();`
+  void basic() { level = OptionLevel::kBasic; }
+  /// Name of its outermost group; empty for an option outside all groups.
+  std::string_view group() const {
+    const std::size_t dot = path.find('.');
+    return dot == std::string::npos ? std::string_view() : std::string_view(path).substr(0, dot);
+  }
 };
 
 /// The fields of an options struct and of the structs inside it, in order of declaration.
 /// References stay valid as long as the described struct does.
 class OptionTable {
  public:
-  void number(std::string_view name, double& value, double low, double high, std::string_view unit,
-              std::string_view help);
-  void integer(std::string_view name, int& value, int low, int high, std::string_view unit,
-               std::string_view help);
-  void flag(std::string_view name, bool& value, std::string_view help);
+  OptionField& number(std::string_view name, double& value, double low, double high,
+                      std::string_view unit, std::string_view help);
+  OptionField& integer(std::string_view name, int& value, int low, int high, std::string_view unit,
+                       std::string_view help);
+  OptionField& flag(std::string_view name, bool& value, std::string_view help);
   template <typename Enum>
-  requires std::is_enum_v<Enum>
-  void choice(std::string_view name, Enum& value, std::vector<std::string> names,
-              std::string_view help) {
-    addChoice(name,
-              {[&value] { return static_cast<int>(value); },
-               [&value](int v) { value = static_cast<Enum>(v); }, std::move(names)},
-              help);
+  requires std::is_enum_v<Enum> OptionField& choice(std::string_view name, Enum& value,
+                                                    std::vector<std::string> names,
+                                                    std::string_view help) {
+    return addChoice(name,
+                     {[&value] { return static_cast<int>(value); },
+                      [&value](int v) { value = static_cast<Enum>(v); }, std::move(names)},
+                     help);
   }
-  /// Puts the fields of `options` under `name.`.
+  /// Puts the fields of `options` under `name.`. `title`: what the group is about, as a heading.
   template <typename Options>
-  void group(std::string_view name, Options& options) {
+  void group(std::string_view name, Options& options, std::string_view title = "") {
     const std::string outer = prefix_;
+    titles_.emplace(prefix_ + std::string(name), title);
     prefix_ += std::string(name) + ".";
     listOptions(*this, options);
     prefix_ = outer;
@@ -61,10 +78,14 @@ class OptionTable {
   void check() const;
   /// The field at `path`; nullptr if there is none.
   const OptionField* find(std::string_view path) const;
+  /// What the group `path` is about; empty if it was not said.
+  std::string titleOf(std::string_view path) const;
 
  private:
-  void addChoice(std::string_view name, ChoiceRef ref, std::string_view help);
+  OptionField& add(OptionField field);
+  OptionField& addChoice(std::string_view name, ChoiceRef ref, std::string_view help);
   std::vector<OptionField> fields_;
+  std::map<std::string, std::string, std::less<>> titles_;
   std::string prefix_;
 };
 

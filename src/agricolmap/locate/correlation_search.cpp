@@ -14,22 +14,30 @@
 namespace agricolmap::locate {
 
 void listOptions(OptionTable& table, CorrelationOptions& options) {
-  table.number("cell", options.cell, 0.01, 10.0, "m",
-               "cell of the search, rounded to whole grid cells");
+  table
+      .number("cell", options.cell, 0.01, 10.0, "m",
+              "cell of the search, rounded to whole grid cells")
+      .basic();
   table.number("tolerance", options.tolerance, 0.05, 5.0, "cells",
                "RMS displacement between neighbouring hypotheses of heading and scales");
   table.number("block", options.block, 0.2, 100.0, "m",
                "side of the blocks that the moving map is cut into");
   table.integer("max_blocks", options.max_blocks, 1, 1000, "",
                 "at most this many blocks, the most textured ones, take part");
-  table.number("max_length", options.max_length, 1.0, 1000.0, "m",
-               "strips longer than this are sought by their most textured stretch of this length");
-  table.flag("rows_on_rows", options.rows_on_rows,
-             "only headings and scales that lay the rows of one map on those of the other; all, "
-             "when that finds nothing convincing");
-  table.number("max_work", options.max_work, 1.0, 1e9, "1e6 cells",
-               "limit of the fixed map's cells times correlations; beyond it the cells are made "
-               "coarser, up to 0.25 m");
+  table
+      .number("max_length", options.max_length, 1.0, 1000.0, "m",
+              "strips longer than this are sought by their most textured stretch of this length")
+      .basic();
+  table
+      .flag("rows_on_rows", options.rows_on_rows,
+            "only headings and scales that lay the rows of one map on those of the other; all, "
+            "when that finds nothing convincing")
+      .basic();
+  table
+      .number("max_work", options.max_work, 1.0, 1e9, "1e6 cells",
+              "limit of the fixed map's cells times correlations; beyond it the cells are made "
+              "coarser, up to 0.25 m")
+      .basic();
   table.integer("peaks", options.peaks, 1, 10000, "",
                 "places in the map at which the finer headings and scales around a coarse one are "
                 "looked at");
@@ -37,11 +45,12 @@ void listOptions(OptionTable& table, CorrelationOptions& options) {
                "least share of the blocks that must lie in the fixed map");
   table.integer("climbs", options.climbs, 1, 10000, "",
                 "placements of the lattice from which the score is climbed");
-  table.integer("candidates", options.candidates, 1, 1000, "",
-                "placements that are handed on to be refined and compared");
+  table
+      .integer("candidates", options.candidates, 1, 1000, "",
+               "placements that are handed on to be refined and compared")
+      .basic();
   table.number("separation", options.separation, 0.0, 100.0, "m",
                "placements whose corners differ by less are one");
-  table.group("filter", options.filter);
 }
 
 namespace {

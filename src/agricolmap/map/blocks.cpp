@@ -85,6 +85,10 @@ std::vector<Block> cutBlocks(const SignalMap& map, const StripFrame& strip, doub
 }
 
 Stretch texturedStretch(const std::vector<Block>& blocks, const StripFrame& strip, double length) {
+  // Room for one block at least, whatever the rounding of its ends.
+  for (const Block& block : blocks) {
+    length = std::max(length, (1.0 + 1e-9) * (block.high.x() - block.low.x()));
+  }
   double from = -std::numeric_limits<double>::infinity();
   double to = std::numeric_limits<double>::infinity();
   if (2.0 * strip.half_extent.x() > length) {

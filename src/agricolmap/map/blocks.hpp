@@ -56,8 +56,8 @@ struct Stretch {
   Eigen::Vector2d half_extent = Eigen::Vector2d::Zero();  ///< along and across the strip [m]
 };
 
-/// The stretch of at most `length` [m] along the strip whose blocks hold the most; all of them, if
-/// the strip is not longer.
+/// The stretch of at most `length` [m] along the strip whose blocks hold the most, of one block
+/// where these are longer; all of them, if the strip is not longer.
 Stretch texturedStretch(const std::vector<Block>& blocks, const StripFrame& strip, double length);
 
 }  // namespace agricolmap::map

@@ -13,13 +13,20 @@
 namespace agricolmap::map {
 
 void listOptions(OptionTable& table, GridOptions& options) {
-  table.number("cell", options.cell, 0.005, 1.0, "m", "side of a grid cell, s in the paper");
-  table.number("sigma", options.sigma, 0.001, 10.0, "m",
-               "deviation of the Gaussian weight around a cell's centre, sigma_avg in the paper");
-  table.choice("exg", options.exg, {"plain", "chromatic"},
-               "Excess Green on raw colours (the paper's) or on chromatic coordinates");
-  table.flag("coarsen", options.coarsen,
-             "larger cells, and sigma with them, where a cloud has fewer points than cells");
+  table.number("cell", options.cell, 0.005, 1.0, "m", "side of a grid cell, s in the paper")
+      .basic();
+  table
+      .number("sigma", options.sigma, 0.001, 10.0, "m",
+              "deviation of the Gaussian weight around a cell's centre, sigma_avg in the paper")
+      .basic();
+  table
+      .choice("exg", options.exg, {"plain", "chromatic"},
+              "Excess Green on raw colours (the paper's) or on chromatic coordinates")
+      .basic();
+  table
+      .flag("coarsen", options.coarsen,
+            "larger cells, and sigma with them, where a cloud has fewer points than cells")
+      .basic();
 }
 
 float excessGreen(Rgb colour, ExgKind kind) {
@@ -194,7 +201,6 @@ void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMa
 
 GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options) {
-  checkOptions(options);
   if (cloud.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError(fmt::format("{}: more than 2^32 points; split the cloud", cloud.name));
   }
@@ -205,10 +211,12 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
   const Bands bands = sortIntoBands(cloud, map.frame, Locator(map.frame, levelled_from_local));
   map.points = bands.points.size();
   if (map.points == 0) {
-    throw InputError(fmt::format(
-        "{}: no point lies in the window that the initial guess gives; check --prior and the "
-        "offset.xyz files (do both clouds use the same coordinate system?)",
-        cloud.name));
+    throw InputError(
+        fmt::format(
+            "{}: no point lies in the window that the initial guess gives; do both clouds use the "
+            "same coordinate system?",
+            cloud.name),
+        Remedy::kInitialGuess);
   }
   map.weight = Raster<float>(rows, cols);
   map.height = Raster<float>(rows, cols);

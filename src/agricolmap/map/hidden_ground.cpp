@@ -10,8 +10,10 @@
 namespace agricolmap::map {
 
 void listOptions(OptionTable& table, HiddenGroundOptions& options) {
-  table.flag("fill", options.fill,
-             "take what a plant hides from the moving map's camera for bare ground when refining");
+  table
+      .flag("fill", options.fill,
+            "take what a plant hides from the moving map's camera for bare ground when refining")
+      .basic();
   table.number("radius", options.radius, 0.02, 10.0, "m",
                "half side of the square that says how many points a cell usually has");
   table.number("whole", options.whole, 0.05, 2.0, "",
@@ -55,7 +57,6 @@ Raster<float> bareGround(const GridMap& map, double share) {
 }  // namespace
 
 GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options) {
-  checkOptions(options);
   GridMap filled = map;
   if (!options.fill) return filled;
   const int radius = std::max(1, static_cast<int>(std::lround(options.radius / map.frame.cell)));

@@ -22,8 +22,10 @@ void listOptions(OptionTable& table, LevelOptions& options) {
                "side of the cells whose low points stand for the ground");
   table.number("percentile", options.percentile, 0.0, 0.5, "",
                "which of a cell's heights is taken for its ground");
-  table.number("max_tilt_deg", options.max_tilt_deg, 0.0, 80.0, "deg",
-               "ground planes steeper than this are refused");
+  table
+      .number("max_tilt_deg", options.max_tilt_deg, 0.0, 80.0, "deg",
+              "ground planes steeper than this are refused")
+      .basic();
 }
 
 namespace {
@@ -181,7 +183,6 @@ Levelling levelUnderCanopy(const Levelling& found, const LevelPoints& points,
 
 Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local,
                      const LevelOptions& options) {
-  checkOptions(options);
   if (cloud.empty()) throw InputError(fmt::format("{}: the cloud has no points", cloud.name));
   const LevelPoints points = samplePoints(cloud, guess_from_local);
   requireExtent(cloud, points);
@@ -204,10 +205,12 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
     result = levelUnderCanopy(result, points, centre, options);
   }
   if (result.tilt > limit) {
-    throw InputError(fmt::format(
-        "{}: its ground plane is tilted by {:.0f} deg (level.max_tilt_deg is {}); z must point up: "
-        "give the cloud's attitude in offset.xyz or --prior",
-        cloud.name, degrees(result.tilt), options.max_tilt_deg));
+    throw InputError(
+        fmt::format(
+            "{}: its ground plane is tilted by {:.0f} deg (level.max_tilt_deg is {}); z must point "
+            "up: give the cloud's attitude in the initial guess",
+            cloud.name, degrees(result.tilt), options.max_tilt_deg),
+        Remedy::kInitialGuess);
   }
   result.levelled_from_guess =
       Eigen::Translation3d(0.0, 0.0, -centre.z()) * result.levelled_from_guess;

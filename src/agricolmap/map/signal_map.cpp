@@ -8,8 +8,10 @@
 namespace agricolmap::map {
 
 void listOptions(OptionTable& table, SignalOptions& options) {
-  table.number("high_pass", options.high_pass, 0.05, 100.0, "m",
-               "variation slower than this wavelength is taken out before maps are compared");
+  table
+      .number("high_pass", options.high_pass, 0.05, 100.0, "m",
+              "variation slower than this wavelength is taken out before maps are compared")
+      .basic();
   table.number("clip", options.clip, 0.5, 100.0, "deviations", "larger values are cut to this");
   listDataTerm(table, options.term);
 }
@@ -156,7 +158,6 @@ Raster<float> weightedBoxMean(const Raster<float>& value, const Raster<float>& w
 }
 
 SignalMap makeSignalMap(const GridMap& map, int factor, const SignalOptions& options) {
-  checkOptions(options);
   Coarse coarse = averageCells(map, factor, options.term);
   SignalMap signal;
   signal.frame = coarse.frame;

@@ -227,7 +227,6 @@ Raster<float> seenMargin(const GridMap& map) {
 }  // namespace
 
 VegetationThreshold vegetationThreshold(const GridMap& map, const VegetationOptions& options) {
-  checkOptions(options);
   VegetationThreshold result;
   const auto filled = std::count_if(map.weight.begin(), map.weight.end(),
                                     [](float weight) { return weight > 0.0F; });

@@ -1,6 +1,5 @@
 #include "agricolmap/paper/estimate_affine.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,11 +12,9 @@
 namespace agricolmap::paper {
 
 void listOptions(OptionTable& table, AffineOptions& options) {
-  table.choice("model", options.model, {"scaled_rotation", "free"}, "what the transform may do");
   table.number("tukey", options.tukey, 2.0, 20.0, "deviations", "residual that gets no weight");
   table.integer("least", options.least, 4, 1000000, "", "matches needed");
   table.integer("starts", options.starts, 1, 100000, "", "random minimal fits to start from");
-  table.integer("seed", options.seed, 0, 2147483647, "", "of the random fits");
 }
 
 std::string_view toString(AffineStatus status) {
@@ -39,37 +36,6 @@ constexpr std::size_t kScored = 1000;  ///< matches that a random fit is judged 
 constexpr int kReweights = 30;
 constexpr double kLeastSigma = 1e-6;  ///< keeps exact data from dividing by zero [m]
 
-/// Weighted least squares of any 2-D affine map; nothing when the points span no area.
-std::optional<Eigen::Affine2d> fitFree(std::span<const Match> matches,
-                                       std::span<const double> weights) {
-  double total = 0.0;
-  Eigen::Vector2d mean_q = Eigen::Vector2d::Zero();
-  Eigen::Vector2d mean_p = Eigen::Vector2d::Zero();
-  const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    total += weight(i);
-    mean_q += weight(i) * matches[i].moving;
-    mean_p += weight(i) * matches[i].fixed;
-  }
-  if (!(total > 0.0)) return std::nullopt;
-  mean_q /= total;
-  mean_p /= total;
-  Eigen::Matrix2d cross = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Eigen::Vector2d q = matches[i].moving - mean_q;
-    cross += weight(i) * (matches[i].fixed - mean_p) * q.transpose();
-    spread += weight(i) * q * q.transpose();
-  }
-  const double trace = spread.trace();
-  if (!(trace > 0.0) || spread.determinant() < 1e-10 * trace * trace) return std::nullopt;
-  Eigen::Affine2d fit;
-  fit.linear() = cross * spread.inverse();
-  if (!(fit.linear().determinant() > 0.0)) return std::nullopt;
-  fit.translation() = mean_p - fit.linear() * mean_q;
-  return fit;
-}
-
 /// One problem: the matches, and how a map is fitted to some of them.
 class Problem {
  public:
@@ -78,7 +44,6 @@ class Problem {
 
   std::optional<Eigen::Affine2d> fit(std::span<const Match> matches,
                                      std::span<const double> weights) const {
-    if (options_.model == AffineModel::kFree) return fitFree(matches, weights);
     const auto fitted = fitScaledRotation(matches, weights, axes_);
     if (!fitted) return std::nullopt;
     return fitted->fixed_from_moving;
@@ -154,7 +119,6 @@ AffineEstimate failure(AffineStatus status) {
 
 AffineEstimate estimateAffine(std::span<const Match> matches, const Eigen::Matrix2d& scale_axes,
                               const AffineOptions& options) {
-  checkOptions(options);
   const auto least = static_cast<std::size_t>(options.least);
   if (matches.size() < least) return failure(AffineStatus::kTooFewMatches);
   const Problem problem(matches, scale_axes, options);

@@ -1,4 +1,5 @@
-// Stage 5: the preliminary transform from matched points (paper Sec. IV, Eq. 3).
+// Stage 5: the preliminary transform from matched points (paper Sec. IV, Eq. 3): rotation, a scale
+// along each file axis and a shift, all that flat data can tell.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,18 +11,11 @@
 
 namespace agricolmap::paper {
 
-/// What the transform may consist of.
-enum class AffineModel {
-  kScaledRotation,  ///< rotation, a scale along each file axis, shift: all that flat data can tell
-  kFree,            ///< any 2-D affine map, shear included
-};
-
 struct AffineOptions {
-  AffineModel model = AffineModel::kScaledRotation;
   double tukey = 4.685;  ///< where the biweight reaches 0, in deviations of the residuals
   int least = 8;         ///< matches needed, before and after outliers are set aside
   int starts = 200;      ///< random minimal fits to start from
-  int seed = 1;
+  int seed = 1;          ///< not listed: the registration has one
 };
 void listOptions(OptionTable& table, AffineOptions& options);
 

@@ -18,17 +18,19 @@ void listOptions(OptionTable& table, FlowAssociationOptions& options) {
   table.group("cost", options.cost);
   table.group("flow", options.flow);
   table.group("vote", options.vote);
-  table.flag(
-      "warps", options.warps,
-      "match with the moving map turned and stretched where the guess may be far off; not in "
-      "the paper");
-  table.number("heading_tolerance", options.heading_tolerance_deg, 0.1, 180.0, "deg",
+  table
+      .flag("warps", options.warps,
+            "match with the moving map turned and stretched where the guess may be far off; not in "
+            "the paper")
+      .basic();
+  table.number("heading_tolerance_deg", options.heading_tolerance_deg, 0.1, 180.0, "deg",
                "heading error to match with without a warp");
   table.number("scale_tolerance", options.scale_tolerance, 0.01, 1.0, "",
                "scale error to match with without a warp, as a logarithm");
-  table.flag("rematch", options.rematch,
-             "match again with the moving map laid as each placement found; not in the paper");
-  table.integer("seed", options.seed, 0, 2147483647, "", "of the random search");
+  table
+      .flag("rematch", options.rematch,
+            "match again with the moving map laid as each placement found; not in the paper")
+      .basic();
 }
 
 namespace {

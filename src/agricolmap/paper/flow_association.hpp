@@ -26,7 +26,7 @@ struct FlowAssociationOptions {
   /// Matches the placements found again, each with the moving map warped by it; not in the
   /// paper.
   bool rematch = true;
-  int seed = 1;  ///< of the random search
+  int seed = 1;  ///< of the random search; not listed: the registration has one
 };
 void listOptions(OptionTable& table, FlowAssociationOptions& options);
 

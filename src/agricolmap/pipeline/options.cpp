@@ -3,42 +3,132 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+
 #include "agricolmap/core/error.hpp"
 
 namespace agricolmap::pipeline {
 
 void listOptions(OptionTable& table, RegistrationOptions& options) {
-  table.flag("geometry_only", options.geometry_only,
-             "use heights alone, as clouds without colours need");
-  table.choice("association", options.association, {"correlation", "flow"},
-               "how the moving map is placed: global correlation search or the paper's flow");
-  table.choice("refine", options.refine, {"dense", "cpd"},
-               "how the placement is refined: Gauss-Newton on the maps, or CPD on the vegetation");
-  table.group("prior", options.prior);
-  table.group("level", options.level);
-  table.group("grid", options.grid);
-  table.group("signal", options.signal);
-  table.group("search", options.search);
-  table.group("flow", options.flow);
-  table.group("affine", options.affine);
-  table.group("hidden", options.hidden);
-  table.group("dense", options.dense);
-  table.group("vegetation", options.vegetation);
-  table.group("cpd", options.cpd);
-  table.group("vertical", options.vertical);
-  table.group("evidence", options.evidence);
-  table.group("uncertainty", options.uncertainty);
-  table.group("verdict", options.verdict);
+  table
+      .flag("geometry_only", options.geometry_only,
+            "use heights alone, as clouds without colours need")
+      .basic();
+  table
+      .choice("association", options.association, {"correlation", "flow"},
+              "how the moving map is placed: global correlation search or the paper's flow")
+      .basic();
+  table
+      .choice("refine", options.refine, {"dense", "cpd"},
+              "how the placement is refined: Gauss-Newton on the maps, or CPD on the vegetation")
+      .basic();
+  table.integer("seed", options.seed, 0, 2147483647, "", "what everything random follows from")
+      .basic();
+  table.group("prior", options.prior, "how wrong the initial guess may be");
+  table.group("level", options.level, "levelling");
+  table.group("grid", options.grid, "the grid maps");
+  table.group("signal", options.signal, "what of the maps is compared");
+  table.group("filter", options.filter, "the matched filter of the search and of the evidence");
+  table.group("search", options.search, "the correlation search (association = correlation)");
+  table.group("flow", options.flow, "the paper's flow and vote (association = flow)");
+  table.group("affine", options.affine, "the affine from the flow's matches (association = flow)");
+  table.group("hidden", options.hidden, "ground that plants hide from the robot");
+  table.group("dense", options.dense, "the refinement on the maps (refine = dense)");
+  table.group("vegetation", options.vegetation, "telling plants from soil (refine = cpd)");
+  table.group("cpd", options.cpd, "coherent point drift (refine = cpd)");
+  table.group("vertical", options.vertical, "tilt and height");
+  table.group("evidence", options.evidence, "what the verdict rests on");
+  table.group("uncertainty", options.uncertainty, "the stated error");
+  table.group("verdict", options.verdict, "when a registration is accepted");
 }
 
-RegistrationOptions inForce(const RegistrationOptions& options) {
-  checkOptions(options);
-  RegistrationOptions resolved = options;
-  if (options.geometry_only) {
-    resolved.signal.term = map::DataTerm::kHeight;
-    resolved.flow.describe.term = map::DataTerm::kHeight;
+namespace {
+
+bool correlates(const RegistrationOptions& options) {
+  return options.association == AssociationKind::kCorrelation;
+}
+bool flows(const RegistrationOptions& options) {
+  return options.association == AssociationKind::kFlow;
+}
+bool refinesDensely(const RegistrationOptions& options) {
+  return options.refine == RefineKind::kDense;
+}
+bool refinesByPoints(const RegistrationOptions& options) {
+  return options.refine == RefineKind::kCpd;
+}
+
+/// What options need to have an effect.
+struct Need {
+  std::string_view path;  ///< of an option, or of a group with its dot
+  bool (*met)(const RegistrationOptions&);
+  std::string_view words;
+};
+constexpr std::array kNeeds = {
+    Need{"search.", correlates, "association = correlation"},
+    Need{"flow.", flows, "association = flow"},
+    Need{"affine.", flows, "association = flow"},
+    Need{"dense.", refinesDensely, "refine = dense"},
+    Need{"vegetation.", refinesByPoints, "refine = cpd"},
+    Need{"cpd.", refinesByPoints, "refine = cpd"},
+    Need{"signal.term",
+         [](const RegistrationOptions& o) {
+           return !o.geometry_only || o.signal.term == map::DataTerm::kHeight;
+         },
+         "geometry_only = false"},
+    Need{"flow.describe.term",
+         [](const RegistrationOptions& o) {
+           return !o.geometry_only || o.flow.describe.term == map::DataTerm::kHeight;
+         },
+         "geometry_only = false"},
+    Need{"flow.heading_tolerance_deg", [](const RegistrationOptions& o) { return o.flow.warps; },
+         "flow.warps = true"},
+    Need{"flow.scale_tolerance", [](const RegistrationOptions& o) { return o.flow.warps; },
+         "flow.warps = true"},
+    Need{"hidden.fill",
+         [](const RegistrationOptions& o) {
+           return !o.hidden.fill || o.signal.term != map::DataTerm::kRgb;
+         },
+         "another signal.term than rgb"},
+    Need{"hidden.radius", [](const RegistrationOptions& o) { return o.hidden.fill; },
+         "hidden.fill = true"},
+    Need{"hidden.whole", [](const RegistrationOptions& o) { return o.hidden.fill; },
+         "hidden.fill = true"},
+    Need{"hidden.bare", [](const RegistrationOptions& o) { return o.hidden.fill; },
+         "hidden.fill = true"},
+    Need{"dense.hop", [](const RegistrationOptions& o) { return o.dense.hops > 0; },
+         "dense.hops of 1 or more"},
+};
+
+}  // namespace
+
+RegistrationOptions resolved(const RegistrationOptions& chosen) {
+  checkOptions(chosen);
+  if (refinesByPoints(chosen) && chosen.cpd.sigma_end > chosen.cpd.sigma_start) {
+    throw UsageError(fmt::format("option cpd.sigma_end = {} is larger than cpd.sigma_start = {}",
+                                 chosen.cpd.sigma_end, chosen.cpd.sigma_start));
   }
-  return resolved;
+  RegistrationOptions options = chosen;
+  if (options.geometry_only) {
+    options.signal.term = map::DataTerm::kHeight;
+    options.flow.describe.term = map::DataTerm::kHeight;
+  }
+  // Ground that is filled in has no colours.
+  if (options.signal.term == map::DataTerm::kRgb) options.hidden.fill = false;
+  options.search.signal = options.signal;
+  options.search.filter = options.filter;
+  options.evidence.filter = options.filter;
+  options.flow.seed = options.seed;
+  options.affine.seed = options.seed;
+  return options;
+}
+
+std::string missingFor(const RegistrationOptions& options, std::string_view path) {
+  for (const Need& need : kNeeds) {
+    const bool concerned =
+        need.path.ends_with('.') ? path.starts_with(need.path) : path == need.path;
+    if (concerned && !need.met(options)) return std::string(need.words);
+  }
+  return {};
 }
 
 std::vector<std::string> presetNames() { return {"default", "paper", "paper-literal"}; }

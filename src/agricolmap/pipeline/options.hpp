@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "agricolmap/core/options.hpp"
@@ -29,10 +30,12 @@ struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
   RefineKind refine = RefineKind::kDense;
+  int seed = 1;
   PriorUncertainty prior;
   map::LevelOptions level;
   map::GridOptions grid;
   map::SignalOptions signal;
+  correlation::MatchedFilterOptions filter;
   locate::CorrelationOptions search;
   paper::FlowAssociationOptions flow;
   paper::AffineOptions affine;
@@ -47,9 +50,14 @@ struct RegistrationOptions {
 };
 void listOptions(OptionTable& table, RegistrationOptions& options);
 
-/// The options as a registration takes them: with what some of them say about others. Throws
-/// UsageError for values outside their limits.
-RegistrationOptions inForce(const RegistrationOptions& options);
+/// The options as they are in force: what one of them decides for others is written there, so that
+/// what is reported is what was done. Whoever registers calls this first; calling it again changes
+/// nothing. Throws UsageError for values outside their limits, alone or beside one another.
+RegistrationOptions resolved(const RegistrationOptions& chosen);
+
+/// What the option at `path` needs to do anything and does not have under `options`, in words such
+/// as `association = flow`; empty when it has an effect.
+std::string missingFor(const RegistrationOptions& options, std::string_view path);
 
 /// Names of the presets: "default" measures best; "paper" is the paper's chain and parameters, with
 /// the moving map matched under several warps, which the range of errors that the paper reports

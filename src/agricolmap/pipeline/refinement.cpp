@@ -72,7 +72,7 @@ Refined refineByPoints(const refine::PairSignals& signals, const Eigen::Affine2d
   pose.plane = start;
   pose.height_offset = vertical.status == refine::VerticalStatus::kOk ? vertical.offset : 0.0;
   const paper::CpdResult result =
-      paper::refineByCpd(fixed.points, moving.points, pose, options.cpd, scale_axes);
+      paper::refineByCpd(fixed.points, moving.points, pose, options.cpd);
   Refined refined;
   refined.cpd = CpdReport{fixed.points.size(), moving.points.size(),
                           static_cast<std::size_t>(result.iterations), result.matched_share};

@@ -14,7 +14,7 @@ refine::PairSignals signalsOf(const correlation::MapSignals& fixed,
                               const correlation::MapSignals& moving,
                               const RegistrationOptions& options, Monitor& monitor) {
   return monitor.run(Stage::kSignals, [&] {
-    return refine::PairSignals(fixed, moving, options.hidden, options.evidence.filter);
+    return refine::PairSignals(fixed, moving, options.hidden, options.filter);
   });
 }
 
@@ -126,7 +126,7 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
                             const RegistrationOptions& chosen, Monitor& monitor,
                             const Locator& locator) {
   const StopScope scope(monitor.stop());
-  const RegistrationOptions options = inForce(chosen);
+  const RegistrationOptions options = resolved(chosen);
   requireUsable(fixed, moving, options, locator != nullptr);
   PairMaps maps = mapPair(fixed, moving, guess, options, monitor);
   auto [outcome, scale] =

@@ -9,10 +9,11 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
   if (options.geometry_only) return;
   for (const Cloud* cloud : {&fixed, &moving}) {
     if (!cloud->hasColour()) {
-      throw InputError(fmt::format(
-          "{}: has no colours; Excess Green needs them (use --geometry_only to register by height "
-          "alone)",
-          cloud->name));
+      throw InputError(
+          fmt::format("{}: has no colours, which Excess Green needs; it can be registered by "
+                      "heights alone",
+                      cloud->name),
+          Remedy::kHeightsAlone);
     }
   }
 }
@@ -25,8 +26,9 @@ void requireUsable(const Cloud& fixed, const Cloud& moving, const RegistrationOp
   if ((options.prior.anywhere() || options.prior.scale_unknown) && !located_otherwise &&
       options.association == AssociationKind::kFlow) {
     throw UsageError(
-        "the flow needs to know about where to look and at what scale: give --prior-sigma with a "
-        "translation and no --scale-unknown, or use --association correlation");
+        "the flow needs to know about where to look and at what scale; the correlation search does "
+        "not",
+        Remedy::kNarrowerGuess);
   }
 }
 

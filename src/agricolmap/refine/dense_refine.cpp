@@ -255,7 +255,6 @@ double correlationOf(const Sums& sums, const bool used[]) {
 
 DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap& moving,
                               const Eigen::Affine2d& start, const DenseRefineOptions& options) {
-  checkOptions(options);
   DenseRefineResult result;
   const Samples samples = collect(moving);
   if (samples.cells.empty()) return result;

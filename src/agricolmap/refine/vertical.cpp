@@ -17,8 +17,10 @@ void listOptions(OptionTable& table, VerticalOptions& options) {
                "side of the window whose lowest cells stand for the ground");
   table.number("ground_tolerance", options.ground_tolerance, 0.001, 10.0, "m",
                "height above the ground at which a cell's weight as ground has fallen to 0.6");
-  table.number("max_slope", options.max_slope, 0.0, 10.0, "m/m",
-               "a larger tilt between the levelled maps is refused");
+  table
+      .number("max_slope", options.max_slope, 0.0, 10.0, "m/m",
+              "a larger tilt between the levelled maps is refused")
+      .basic();
   table.number("robust", options.robust, 0.5, 100.0, "deviations",
                "height differences further off do not count (Tukey weight)");
 }
@@ -219,7 +221,6 @@ double levelDeviation(const map::GridMap& fixed, const map::GridMap& moving,
 VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving,
                            const Eigen::Affine2d& fixed_from_moving,
                            const VerticalOptions& options) {
-  checkOptions(options);
   VerticalResult result;
   std::vector<Pair> pairs = overlap(fixed, moving, fixed_from_moving, options.ground_window);
   result.cells = pairs.size();

@@ -3,27 +3,29 @@
 namespace agricolmap::simulate {
 
 void listOptions(OptionTable& t, FieldOptions& o) {
-  t.number("width", o.width, 2.0, 200.0, "m", "east-west extent of the UAV map");
-  t.number("height", o.height, 2.0, 200.0, "m", "north-south extent of the UAV map");
-  t.flag("random_row_heading", o.random_row_heading, "rows in a random direction");
+  t.number("width", o.width, 2.0, 200.0, "m", "east-west extent of the UAV map").basic();
+  t.number("height", o.height, 2.0, 200.0, "m", "north-south extent of the UAV map").basic();
+  t.flag("random_row_heading", o.random_row_heading, "rows in a random direction").basic();
   t.number("row_heading_deg", o.row_heading_deg, -360.0, 360.0, "deg",
-           "direction of the rows from east, counter-clockwise, when not random");
+           "direction of the rows from east, counter-clockwise, when not random")
+      .basic();
   t.number("row_spacing", o.row_spacing, 0.08, 3.0, "m", "distance between rows");
   t.number("plant_spacing", o.plant_spacing, 0.01, 2.0, "m", "distance of plants along the row");
   t.number("plant_jitter", o.plant_jitter, 0.0, 2.0, "plant spacings",
            "deviation of a plant's place along the row");
   t.number("lateral_jitter", o.lateral_jitter, 0.0, 0.5, "m",
            "deviation of a plant's place across the row");
-  t.number("gaps", o.gaps, 0.0, 1.0, "", "fraction of plants missing, in clusters");
+  t.number("gaps", o.gaps, 0.0, 1.0, "", "fraction of plants missing, in clusters").basic();
   t.number("gap_length", o.gap_length, 0.05, 10.0, "m", "length of a cluster of missing plants");
   t.number("row_wobble", o.row_wobble, 0.0, 1.0, "m", "deviation of the rows' slow meandering");
   t.integer("pass_rows", o.pass_rows, 1, 100, "", "rows sown in one pass of the drill");
   t.number("pass_error", o.pass_error, 0.0, 0.5, "m", "deviation of the distance between passes");
   t.number("tramline_spacing", o.tramline_spacing, 0.0, 100.0, "m",
            "distance between wheel tracks, 0 for none");
-  t.number("weeds", o.weeds, 0.0, 100.0, "1/m2", "mean number of weeds, in patches");
+  t.number("weeds", o.weeds, 0.0, 100.0, "1/m2", "mean number of weeds, in patches").basic();
   t.number("straw", o.straw, 0.0, 500.0, "1/m2", "pieces of straw on the soil");
-  t.number("plant_size", o.plant_size, 0.1, 5.0, "", "factor on the crop's usual plant size");
+  t.number("plant_size", o.plant_size, 0.1, 5.0, "", "factor on the crop's usual plant size")
+      .basic();
   t.number("size_spread", o.size_spread, 0.0, 1.0, "", "deviation of size from plant to plant");
   t.number("growth_gradient", o.growth_gradient, 0.0, 1.0, "",
            "deviation of plant size over about 6 m");
@@ -35,12 +37,14 @@ void listOptions(OptionTable& t, FieldOptions& o) {
 
 void listOptions(OptionTable& t, ViewOptions& o) {
   t.number("leaf_unshared", o.leaf_unshared, 0.0, 1.0, "",
-           "fraction of leaves and of fine soil texture that the views do not share");
-  t.number("wind", o.wind, 0.0, 0.3, "m", "deviation of a plant's top between the views");
-  t.number("growth", o.growth, 0.3, 3.0, "", "plant size in the UGV view over the UAV view's");
+           "fraction of leaves and of fine soil texture that the views do not share")
+      .basic();
+  t.number("wind", o.wind, 0.0, 0.3, "m", "deviation of a plant's top between the views").basic();
+  t.number("growth", o.growth, 0.3, 3.0, "", "plant size in the UGV view over the UAV view's")
+      .basic();
   t.number("sun_hour", o.sun_hour, 6.0, 18.0, "h", "solar time of the flight");
-  t.number("sun_hours", o.sun_hours, -8.0, 8.0, "h", "hours from the flight to the drive");
-  t.number("overcast", o.overcast, 0.0, 1.0, "", "share of light from the whole sky");
+  t.number("sun_hours", o.sun_hours, -8.0, 8.0, "h", "hours from the flight to the drive").basic();
+  t.number("overcast", o.overcast, 0.0, 1.0, "", "share of light from the whole sky").basic();
   t.number("weeds_pulled", o.weeds_pulled, 0.0, 1.0, "", "fraction of weeds gone in the UGV view");
 }
 
@@ -54,8 +58,9 @@ void listOptions(OptionTable& t, ColourOptions& o) {
 }
 
 void listOptions(OptionTable& t, UavOptions& o) {
-  t.number("gsd", o.gsd, 0.004, 0.2, "m", "ground sampling distance");
-  t.number("density", o.density, 0.01, 4.0, "1/gsd2", "points per squared sampling distance");
+  t.number("gsd", o.gsd, 0.004, 0.2, "m", "ground sampling distance").basic();
+  t.number("density", o.density, 0.01, 4.0, "1/gsd2", "points per squared sampling distance")
+      .basic();
   t.number("jitter", o.jitter, 0.0, 2.0, "gsd", "random shift of a sample");
   t.number("smoothing", o.smoothing, 0.0, 0.5, "m", "Gaussian smoothing of heights, deviation");
   t.number("colour_blur", o.colour_blur, 0.0, 10.0, "gsd", "blur of colours, deviation");
@@ -64,17 +69,20 @@ void listOptions(OptionTable& t, UavOptions& o) {
   t.number("underestimate", o.underestimate, 0.0, 1.0, "",
            "fraction of the canopy's height lost besides smoothing");
   t.number("dome", o.dome, -1.0, 1.0, "m", "height error of a corner against the centre");
-  t.number("holes", o.holes, 0.0, 0.5, "", "fraction of the area without points");
+  t.number("holes", o.holes, 0.0, 0.5, "", "fraction of the area without points").basic();
   t.group("colour", o.colour);
 }
 
 void listOptions(OptionTable& t, UgvOptions& o) {
-  t.number("length", o.length, 0.5, 200.0, "m", "length of the strip");
-  t.number("width", o.width, 0.2, 10.0, "m", "width of the strip");
-  t.number("spacing", o.spacing, 0.002, 0.05, "m", "distance of samples at the strip's middle");
+  t.number("length", o.length, 0.5, 200.0, "m", "length of the strip").basic();
+  t.number("width", o.width, 0.2, 10.0, "m", "width of the strip").basic();
+  t.number("spacing", o.spacing, 0.002, 0.05, "m", "distance of samples at the strip's middle")
+      .basic();
   t.number("heading_deg", o.heading_deg, -360.0, 360.0, "deg", "direction against the rows");
-  t.number("overhang", o.overhang, 0.0, 0.9, "", "fraction of the strip beyond the UAV map");
-  t.number("camera_height", o.camera_height, 0.2, 5.0, "m", "height of the camera above the soil");
+  t.number("overhang", o.overhang, 0.0, 0.9, "", "fraction of the strip beyond the UAV map")
+      .basic();
+  t.number("camera_height", o.camera_height, 0.2, 5.0, "m", "height of the camera above the soil")
+      .basic();
   t.number("look_near", o.look_near, 0.0, 5.0, "m", "nearest distance ahead that is mapped");
   t.number("look_far", o.look_far, 0.1, 10.0, "m", "farthest distance ahead that is mapped");
   t.number("edge_density", o.edge_density, 0.01, 1.0, "", "density at the edges over the middle's");
@@ -84,40 +92,45 @@ void listOptions(OptionTable& t, UgvOptions& o) {
   t.number("side_points", o.side_points, 0.0, 1.0, "",
            "share of steps in height with points on their side");
   t.number("outliers", o.outliers, 0.0, 0.2, "", "fraction of flying points");
-  t.number("drift", o.drift, 0.0, 0.1, "", "largest drift of the path over its length");
+  t.number("drift", o.drift, 0.0, 0.1, "", "largest drift of the path over its length").basic();
   t.group("colour", o.colour);
 }
 
 void listOptions(OptionTable& t, GeotagOptions& o) {
-  t.number("translation", o.translation, 0.0, 1000.0, "m", "horizontal error at the centre");
-  t.number("heading_deg", o.heading_deg, 0.0, 180.0, "deg", "heading error, random sign");
-  t.number("scale", o.scale, 0.0, 0.9, "", "scale error per horizontal axis, random signs");
+  t.number("translation", o.translation, 0.0, 1000.0, "m", "horizontal error at the centre")
+      .basic();
+  t.number("heading_deg", o.heading_deg, 0.0, 180.0, "deg", "heading error, random sign").basic();
+  t.number("scale", o.scale, 0.0, 0.9, "", "scale error per horizontal axis, random signs").basic();
   t.number("z", o.z, 0.0, 100.0, "m", "vertical error, random sign");
   t.number("tilt_deg", o.tilt_deg, 0.0, 30.0, "deg", "roll and pitch error, random signs");
   t.number("across_rows", o.across_rows, 0.0, 100.0, "m",
            "further error at the centre, across the rows, random sign");
   t.number("unknown_scale", o.unknown_scale, 1.0, 100.0, "",
-           "UGV file in an unknown unit: lengths divided by a factor from 1/this to this");
+           "UGV file in an unknown unit: lengths divided by a factor from 1/this to this")
+      .basic();
   t.flag("uniform", o.uniform, "errors uniform from zero to the values given");
   t.number("file_heading_deg", o.file_heading_deg, -360.0, 360.0, "deg",
            "heading of the UGV file's x axis, known to the prior");
-  t.flag("utm", o.utm, "UAV file in UTM coordinates");
+  t.flag("utm", o.utm, "UAV file in UTM coordinates").basic();
   t.flag("ugv_georeferenced", o.ugv_georeferenced,
          "UGV file in the UAV file's coordinates, prior is the identity");
 }
 
 void listOptions(OptionTable& t, SimulationOptions& o) {
   t.choice("crop", o.crop, {"soybean", "sugar_beet_10m", "sugar_beet_20m", "winter_wheat", "maize"},
-           "kind of plants");
-  t.group("field", o.field);
-  t.group("views", o.views);
-  t.group("uav", o.uav);
-  t.group("ugv", o.ugv);
-  t.group("geotag", o.geotag);
-  t.integer("seed", o.seed, 0, 2147483647, "", "what everything random follows from");
-  t.flag("other_field", o.other_field, "take the strip from another field: nothing to find");
-  t.flag("beyond_map", o.beyond_map, "take the strip from beyond the UAV map: nothing to find");
-  t.flag("mirrored", o.mirrored, "swap the strip's left and right: nothing to find");
+           "kind of plants")
+      .basic();
+  t.group("field", o.field, "the field");
+  t.group("views", o.views, "how the two views differ");
+  t.group("uav", o.uav, "the drone's cloud");
+  t.group("ugv", o.ugv, "the robot's cloud");
+  t.group("geotag", o.geotag, "the error of the initial guess");
+  t.integer("seed", o.seed, 0, 2147483647, "", "what everything random follows from").basic();
+  t.flag("other_field", o.other_field, "take the strip from another field: nothing to find")
+      .basic();
+  t.flag("beyond_map", o.beyond_map, "take the strip from beyond the UAV map: nothing to find")
+      .basic();
+  t.flag("mirrored", o.mirrored, "swap the strip's left and right: nothing to find").basic();
 }
 
 namespace {

@@ -17,7 +17,6 @@ void listOptions(OptionTable& table, EvidenceOptions& options) {
                "a block agrees when its best place is this near to the predicted one");
   table.number("exclusion", options.exclusion, 0.01, 100.0, "m",
                "other peaks are counted from this distance on");
-  table.group("filter", options.filter);
 }
 
 namespace {

@@ -70,7 +70,6 @@ std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed,
                                                    const Evidence& evidence,
                                                    const SearchSpace& space, double height_residual,
                                                    const UncertaintyOptions& options) {
-  checkOptions(options);
   if (evidence.block_side <= 0.0) return std::nullopt;
   const std::vector<BlockShift> strip = shiftBlocks(fixed, moving, pose, evidence.block_side);
   std::vector<BlockShift> blocks;

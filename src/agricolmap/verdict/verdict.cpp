@@ -24,16 +24,22 @@ const char* toString(Status status) {
 }
 
 void listOptions(OptionTable& table, VerdictOptions& options) {
-  table.number("min_probability", options.min_probability, 0.0, 1.0, "",
-               "least probability of being within 5 cm RMS of the truth in the plane");
-  table.number("min_uniqueness", options.min_uniqueness, 0.0, 100.0, "",
-               "least ratio of the peak to the highest other one, whatever else speaks for it");
+  table
+      .number("min_probability", options.min_probability, 0.0, 1.0, "",
+              "least probability of being within 5 cm RMS of the truth in the plane")
+      .basic();
+  table
+      .number("min_uniqueness", options.min_uniqueness, 0.0, 100.0, "",
+              "least ratio of the peak to the highest other one, whatever else speaks for it")
+      .basic();
   table.number("rival", options.rival, 0.0, 1.0, "",
                "other placements with this share of the best one's significance rival it");
   table.number("min_fit", options.min_fit, 0.0, 1000.0, "deviations",
                "significance from which on rivals mean ambiguity, not chance");
-  table.number("min_overlap", options.min_overlap, 0.0, 1.0, "",
-               "least share of the moving map that must lie on the fixed map");
+  table
+      .number("min_overlap", options.min_overlap, 0.0, 1.0, "",
+              "least share of the moving map that must lie on the fixed map")
+      .basic();
   table.number("scale_margin", options.scale_margin, 0.0, 1.0, "",
                "how far beyond the prior's limits the scales may come out, relative");
   table.number("heading_margin_deg", options.heading_margin_deg, 0.0, 180.0, "deg",
@@ -175,7 +181,7 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
     const double most = 1.0 / (1.0 + static_cast<double>(rivals));
     return {Status::kAmbiguous,
             {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
-                         "a better initial guess (--prior, --prior-sigma) can",
+                         "a better initial guess can",
                          rivals + 1)},
             std::min(all, most),
             std::min(plane, most)};

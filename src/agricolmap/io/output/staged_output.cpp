@@ -117,8 +117,11 @@ StagedOutput::StagedOutput(const fs::path& dir, bool overwrite)
         fmt::format("{}: is a file, not a folder to write results into", dir.string()));
   }
   if (target_existed_ && !overwrite && !isEmptyButForHidden(target_)) {
-    throw OutputError(fmt::format(
-        "{}: the output folder is not empty; name another one or use --overwrite", dir.string()));
+    throw OutputError(
+        fmt::format("{}: the output folder is not empty; name another one, or let what is there be "
+                    "replaced",
+                    dir.string()),
+        Remedy::kOverwrite);
   }
   const fs::path home = target_existed_ ? target_ : target_.parent_path();
   made_parents_ = makeParents(home);
@@ -222,7 +225,8 @@ StagedFile::StagedFile(const fs::path& path, bool overwrite) : asked_(path) {
   }
   if (fs::exists(status) && !overwrite) {
     throw OutputError(
-        fmt::format("{}: exists already; name another file or use --overwrite", path.string()));
+        fmt::format("{}: exists already; name another file, or let it be replaced", path.string()),
+        Remedy::kOverwrite);
   }
   made_parents_ = makeParents(target_.parent_path());
   try {

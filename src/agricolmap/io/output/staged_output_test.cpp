@@ -57,7 +57,7 @@ TEST(StagedOutput, OverwritesOnlyOnRequestAndOnlyItsOwn) {
   dir.write("out/old.txt", "old");
   dir.write("out/stale.txt", "stale");
   dir.write("out/mine.txt", "mine");
-  expectError<OutputError>([&] { StagedOutput(dir / "out", false); }, {"--overwrite"});
+  expectError<OutputError>([&] { StagedOutput(dir / "out", false); }, {"replaced"});
   StagedOutput output(dir / "out", true);
   writeText(output.path("old.txt"), "new");
   writeText(output.path("sub/more.txt"), "more");
@@ -170,7 +170,7 @@ TEST(StagedFile, AppearsWholeOnCommit) {
 TEST(StagedFile, OverwritesOnlyOnRequest) {
   const TempDir dir;
   dir.write("out", "old");
-  expectError<OutputError>([&] { StagedFile(dir / "out", false); }, {"--overwrite"});
+  expectError<OutputError>([&] { StagedFile(dir / "out", false); }, {"replaced"});
   { StagedFile file(dir / "out", true); }
   EXPECT_EQ(contentOf(dir / "out"), "old");
   StagedFile file(dir / "out", true);

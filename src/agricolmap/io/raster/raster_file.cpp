@@ -19,10 +19,14 @@
 namespace agricolmap::io {
 
 void listOptions(OptionTable& table, RasterOptions& options) {
-  table.choice("bands", options.bands, {"auto", "rgb", "rbg", "grb", "gbr", "brg", "bgr"},
-               "colours of the picture's first three bands; auto: as the file declares");
-  table.flag("black_is_nodata", options.black_is_nodata,
-             "treat black as no data where the picture declares neither nodata nor alpha");
+  table
+      .choice("bands", options.bands, {"auto", "rgb", "rbg", "grb", "gbr", "brg", "bgr"},
+              "colours of the picture's first three bands; auto: as the file declares")
+      .basic();
+  table
+      .flag("black_is_nodata", options.black_is_nodata,
+            "treat black as no data where the picture declares neither nodata nor alpha")
+      .basic();
 }
 
 namespace {

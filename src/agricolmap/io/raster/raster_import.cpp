@@ -18,9 +18,12 @@ namespace agricolmap::io {
 
 void listOptions(OptionTable& table, ImportOptions& options) {
   listOptions(table, options.raster);
-  table.integer("step", options.step, 1, 1000, "px", "keep every n-th pixel of every n-th row");
-  table.number("max_height", options.max_height, 0.1, 10000.0, "m",
-               "drop heights farther than this from the median: nodata that is not declared");
+  table.integer("step", options.step, 1, 1000, "px", "keep every n-th pixel of every n-th row")
+      .basic();
+  table
+      .number("max_height", options.max_height, 0.1, 10000.0, "m",
+              "drop heights farther than this from the median: nodata that is not declared")
+      .basic();
 }
 
 namespace {

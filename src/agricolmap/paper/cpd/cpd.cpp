@@ -6,7 +6,6 @@
 #include <numbers>
 #include <optional>
 
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/pose_distance.hpp"
 #include "agricolmap/paper/cpd/cpd_accelerate.hpp"
@@ -34,17 +33,15 @@ std::string_view toString(CpdStatus status) {
 }
 
 void listOptions(OptionTable& table, CpdOptions& options) {
-  table.choice("model", options.model, {"affine", "scaled", "similarity", "rigid"},
-               "horizontal map: 6 parameters, 5 without shear, 4 with one scale, 3 without scale");
-  table.number("sigma_start", options.sigma_start, 0.005, 5.0, "m",
-               "kernel width of the first iteration: how wrong the start may be");
+  table
+      .number("sigma_start", options.sigma_start, 0.005, 5.0, "m",
+              "kernel width of the first iteration: how wrong the start may be")
+      .basic();
   table.number("sigma_end", options.sigma_end, 0.002, 5.0, "m", "least kernel width");
   table.number("decay", options.decay, 0.3, 0.99, "",
                "most of the kernel width that is left from one level to the next");
   table.number("sigma_height", options.sigma_height, 0.0, 10.0, "m",
                "deviation of the height differences; 0 leaves the heights out");
-  table.flag("vertical_scale", options.vertical_scale,
-             "estimate a vertical scale beside the vertical offset");
   table.number("outlier_share", options.outlier_share, 0.001, 0.95, "",
                "share of moving points expected to have no counterpart, w in CPD");
   table.number(
@@ -53,8 +50,6 @@ void listOptions(OptionTable& table, CpdOptions& options) {
       "in kernel widths");
   table.number("start_weight", options.start_weight, 0.0, 10.0, "",
                "pull of the start at sigma_start beside that of the matches; fades with the width");
-  table.flag("weights", options.weights,
-             "greener points count more (drawn to the sunny side of plants)");
   table.integer("max_points", options.max_points, 100, 10000000, "",
                 "points per cloud; more are merged to squares");
   table.integer("max_iterations", options.max_iterations, 1, 10000, "",
@@ -136,15 +131,14 @@ CpdPose fromCentred(const CpdPose& pose, const CpdClouds& clouds) {
   return result;
 }
 
-/// A pose as numbers of like size, all in metres: where three corners of the strip go, the height
-/// offset and the height of 1 m.
+/// A pose as numbers of like size, all in metres: where three corners of the strip go, and
+/// the height offset.
 Eigen::VectorXd toVector(const CpdPose& pose, const CpdClouds& clouds) {
-  Eigen::VectorXd vector(8);
+  Eigen::VectorXd vector(7);
   for (Eigen::Index i = 0; i < 3; ++i) {
     vector.segment<2>(2 * i) = pose.plane * clouds.corners[static_cast<std::size_t>(i)];
   }
   vector(6) = pose.height_offset;
-  vector(7) = pose.height_scale;
   return vector;
 }
 
@@ -158,16 +152,14 @@ CpdPose fromVector(const Eigen::VectorXd& vector, const CpdClouds& clouds) {
   pose.plane.linear() = images * sides.inverse();
   pose.plane.translation() = vector.head<2>() - pose.plane.linear() * corner;
   pose.height_offset = vector(6);
-  pose.height_scale = vector(7);
   return pose;
 }
 
 /// Expectation and maximisation, level by level, until the points stand still at the least σ.
 class Refiner {
  public:
-  Refiner(const CpdClouds& clouds, const CpdOptions& options, const Eigen::Matrix2d& scale_axes,
-          CpdResult& result)
-      : clouds_(clouds), options_(options), scale_axes_(scale_axes), result_(result) {}
+  Refiner(const CpdClouds& clouds, const CpdOptions& options, CpdResult& result)
+      : clouds_(clouds), options_(options), result_(result) {}
 
   /// Fills in the result from `start` (centred clouds); returns the pose.
   CpdPose run(const CpdPose& start) {
@@ -204,8 +196,7 @@ class Refiner {
       ++result_.iterations;
       result_.matched_share = sums.weight > 0.0 ? sums.moments.weight / sums.weight : 0.0;
       if (start_weight > 0.0) addStart(level, pose, start_weight, sums.moments);
-      const std::optional<CpdPose> fit =
-          fitCpdPose(sums.moments, options_.model, scale_axes_, options_.vertical_scale);
+      const std::optional<CpdPose> fit = fitCpdPose(sums.moments);
       if (!fit || result_.matched_share < options_.min_matched) return fail();
       image = *fit;
       estimate = std::sqrt(0.5 * sums.square / sums.moments.weight);
@@ -222,8 +213,7 @@ class Refiner {
         return estimate;
       }
     }
-    // What mixing proposes need not be of the model; what EM returns is.
-    pose = image;
+    pose = image;  // not what mixing proposes
     return estimate;
   }
 
@@ -233,8 +223,7 @@ class Refiner {
                 CpdMoments& moments) const {
     for (const CpdDatum& datum : level.data) {
       Eigen::Vector3d target;
-      target << start_.plane * datum.mean.head<2>(),
-          pose.height_scale * datum.mean.z() + pose.height_offset;
+      target << start_.plane * datum.mean.head<2>(), datum.mean.z() + pose.height_offset;
       moments.add(weight * datum.point.weight, datum.mean, target);
     }
   }
@@ -252,7 +241,6 @@ class Refiner {
 
   const CpdClouds& clouds_;
   const CpdOptions& options_;
-  const Eigen::Matrix2d& scale_axes_;
   CpdResult& result_;
   CpdPose start_;
   bool failed_ = false;
@@ -262,18 +250,13 @@ class Refiner {
 
 CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
                       const std::vector<map::VegetationPoint>& moving, const CpdPose& start,
-                      const CpdOptions& options, const Eigen::Matrix2d& scale_axes) {
-  checkOptions(options);
-  if (options.sigma_end > options.sigma_start) {
-    throw UsageError("sigma_end of the point refinement must not exceed sigma_start");
-  }
+                      const CpdOptions& options) {
   CpdResult result;
   result.pose = start;
   if (fixed.size() < kMinPoints || moving.size() < kMinPoints) return result;
   const CpdClouds clouds = makeCpdClouds(fixed, moving, start, options);
   if (clouds.fixed.size() < kMinPoints || clouds.moving.size() < kMinPoints) return result;
-  const CpdPose refined =
-      Refiner(clouds, options, scale_axes, result).run(toCentred(start, clouds));
+  const CpdPose refined = Refiner(clouds, options, result).run(toCentred(start, clouds));
   if (result.usable()) result.pose = fromCentred(refined, clouds);
   return result;
 }

@@ -25,31 +25,19 @@
 
 namespace agricolmap::paper {
 
-/// Which horizontal maps the refinement may choose from. Tilt is never estimated from the points:
-/// near-planar data cannot carry it.
-enum class CpdModel {
-  kAffine,      ///< shift, yaw, two scales, shear: 6 parameters
-  kScaled,      ///< shift, yaw, two scales along the moving file's axes: 5 parameters
-  kSimilarity,  ///< shift, yaw, one scale: 4 parameters
-  kRigid,       ///< shift, yaw: 3 parameters
-};
-
 struct CpdOptions {
-  CpdModel model = CpdModel::kAffine;
-  double sigma_start = 0.15;    ///< σ of the first iteration: how wrong the start may be [m]
-  double sigma_end = 0.025;     ///< least σ [m]
-  double decay = 0.6;           ///< most of σ that is left from one level to the next
-  double sigma_height = 0.15;   ///< deviation of the height difference [m]; 0: heights unused
-  bool vertical_scale = false;  ///< estimate a vertical scale beside the offset
-  double outlier_share = 0.5;   ///< w, prior share of moving points without a counterpart
-  double border = 2.0;          ///< nearer than this to the edge of the moving map: no data [σ]
-  double start_weight = 0.15;   ///< pull of the start at sigma_start, per point; 0 at sigma_end
-  bool weights = false;         ///< greener points count more; light then shifts the plants
-  int max_points = 40000;       ///< per cloud; more are merged to squares
-  int max_iterations = 50;      ///< at one σ
-  double tolerance = 1e-4;      ///< motion of the strip's points that counts as standing still [m]
-  double max_motion = 0.5;      ///< motion from the start that is no refinement any more [m]
-  double min_matched = 0.1;     ///< least share of the moving points matched in the end
+  double sigma_start = 0.15;   ///< σ of the first iteration: how wrong the start may be [m]
+  double sigma_end = 0.025;    ///< least σ [m]
+  double decay = 0.6;          ///< most of σ that is left from one level to the next
+  double sigma_height = 0.15;  ///< deviation of the height difference [m]; 0: heights unused
+  double outlier_share = 0.5;  ///< w, prior share of moving points without a counterpart
+  double border = 2.0;         ///< nearer than this to the edge of the moving map: no data [σ]
+  double start_weight = 0.15;  ///< pull of the start at sigma_start, per point; 0 at sigma_end
+  int max_points = 40000;      ///< per cloud; more are merged to squares
+  int max_iterations = 50;     ///< at one σ
+  double tolerance = 1e-4;     ///< motion of the strip's points that counts as standing still [m]
+  double max_motion = 0.5;     ///< motion from the start that is no refinement any more [m]
+  double min_matched = 0.1;    ///< least share of the moving points matched in the end
 };
 void listOptions(OptionTable& table, CpdOptions& options);
 
@@ -58,17 +46,17 @@ enum class CpdStatus {
   kIterationLimit,  ///< usable, still moving a little
   kTooFewPoints,    ///< fewer than 20 points on one side (after cropping to the overlap)
   kNoMatches,       ///< less than `min_matched` of the moving points found a counterpart
-  kDegenerate,      ///< the matched points determine no map of the model
+  kDegenerate,      ///< the matched points determine no affine map
   kRanAway,         ///< moved further than `max_motion`
 };
 std::string_view toString(CpdStatus status);
 
 /// Where the refinement starts, and what it returns: fixed = plane · moving horizontally,
-/// fixed_z = height_scale · moving_z + height_offset; levelled frames [m].
+/// fixed_z = moving_z + height_offset; levelled frames [m]. Tilt and a vertical scale are not
+/// estimated from the points: near-planar data cannot carry them.
 struct CpdPose {
   Eigen::Affine2d plane = Eigen::Affine2d::Identity();
   double height_offset = 0.0;
-  double height_scale = 1.0;
 };
 
 struct CpdResult {
@@ -81,12 +69,10 @@ struct CpdResult {
   }
 };
 
-/// Refines `start`. `scale_axes`: directions of the moving file's x and y axes (unit columns) in
-/// the moving points' frame, used by CpdModel::kScaled. Failing to register is a status; the same
+/// Refines `start`, horizontally by any affine map. Failing to register is a status; the same
 /// result on any number of threads.
 CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
                       const std::vector<map::VegetationPoint>& moving, const CpdPose& start,
-                      const CpdOptions& options,
-                      const Eigen::Matrix2d& scale_axes = Eigen::Matrix2d::Identity());
+                      const CpdOptions& options);
 
 }  // namespace agricolmap::paper

@@ -15,16 +15,13 @@ struct CpdMoments {
   Eigen::Vector3d fixed = Eigen::Vector3d::Zero();    ///< Σ W·x
   Eigen::Matrix2d moving2 = Eigen::Matrix2d::Zero();  ///< Σ W·y·yᵀ, horizontal
   Eigen::Matrix2d cross = Eigen::Matrix2d::Zero();    ///< Σ W·x·yᵀ, horizontal
-  double moving_zz = 0.0;                             ///< Σ W·y_z²
-  double cross_zz = 0.0;                              ///< Σ W·x_z·y_z
 
   void add(double w, const Eigen::Vector3d& y, const Eigen::Vector3d& x);
   CpdMoments& operator+=(const CpdMoments& other);
 };
 
-/// The pose of `model` with the least Σ W·|x − pose(y)|²; nothing when the points do not determine
+/// The pose with the least Σ W·|x − pose(y)|²; nothing when the points do not determine
 /// it (fewer than two directions, no weight).
-std::optional<CpdPose> fitCpdPose(const CpdMoments& moments, CpdModel model,
-                                  const Eigen::Matrix2d& scale_axes, bool vertical_scale);
+std::optional<CpdPose> fitCpdPose(const CpdMoments& moments);
 
 }  // namespace agricolmap::paper

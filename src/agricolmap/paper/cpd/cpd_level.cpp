@@ -24,13 +24,14 @@ map::Box2 boxOf(const Points& points) {
   return box;
 }
 
-/// The points, cropped, of equal weight if so chosen, and few enough.
+/// The points, cropped, of equal weight (greener ones lie on the sunny side of plants, and would
+/// draw there), and few enough.
 Points prepare(const Points& points, const map::Box2& crop, const CpdOptions& options) {
   Points kept;
   for (const map::VegetationPoint& p : points) {
     if (!crop.contains(p.position) || !(p.weight > 0.0)) continue;
     kept.push_back(p);
-    if (!options.weights) kept.back().weight = 1.0;
+    kept.back().weight = 1.0;
   }
   return map::thinToAtMost(kept, static_cast<std::size_t>(options.max_points));
 }
@@ -121,8 +122,7 @@ CpdLevel makeCpdLevel(const CpdClouds& clouds, const CpdPose& pose, double sigma
             own.at(moved[chosen[i]].head<3>(), widths).mean_offset.cast<double>();
         CpdDatum& datum = level.data[i];
         datum.point = p;
-        datum.mean << p.position + back * offset.head<2>(),
-            p.height + offset.z() / pose.height_scale;
+        datum.mean << p.position + back * offset.head<2>(), p.height + offset.z();
       },
       kChunk);
   return level;

@@ -47,7 +47,7 @@ CpdLevel makeCpdLevel(const CpdClouds& clouds, const CpdPose& pose, double sigma
 inline Eigen::Vector3d applyPose(const CpdPose& pose, const Eigen::Vector2d& position,
                                  double height) {
   const Eigen::Vector2d moved = pose.plane * position;
-  return {moved.x(), moved.y(), pose.height_scale * height + pose.height_offset};
+  return {moved.x(), moved.y(), height + pose.height_offset};
 }
 
 }  // namespace agricolmap::paper

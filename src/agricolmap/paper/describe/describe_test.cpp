@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/paper/describe/descriptor_map.hpp"
@@ -217,9 +216,6 @@ TEST(DescribeMap, CropsHalvesAndFollowsTheDataTerm) {
     options.term = term;
     EXPECT_EQ(std::popcount(describedFirst(map, options).known[middle]), bits);
   }
-  DescribeOptions bad;
-  bad.daisy.radius = 1.0;
-  EXPECT_THROW(describeMap(map, part, 1, bad), UsageError);
 }
 
 TEST(DescribeMap, CoarseDescriptorsSpanFewerCells) {

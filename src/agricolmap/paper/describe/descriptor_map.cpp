@@ -91,7 +91,6 @@ DescriptorMap describeLevel(const Channels& channels, const GridFrame& frame,
 
 std::vector<DescriptorMap> describeMap(const map::GridMap& map, const map::Box2& window, int levels,
                                        const DescribeOptions& options) {
-  checkOptions(options);
   const Part part = partIn(map.frame, window);
   if (part.rows == 0 || part.cols == 0) return {};
   GridFrame frame = map.frame;

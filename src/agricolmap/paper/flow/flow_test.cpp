@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/map/test_field.hpp"
 #include "agricolmap/map/warp.hpp"

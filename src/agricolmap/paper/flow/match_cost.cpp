@@ -14,8 +14,9 @@
 namespace agricolmap::paper {
 
 void listOptions(OptionTable& table, CostOptions& options) {
-  table.number("alpha", options.alpha, 0.0, 100.0, "", "weight of DAISY in the matching cost");
-  table.number("beta", options.beta, 0.0, 100.0, "", "weight of FPFH in the matching cost");
+  table.number("alpha", options.alpha, 0.0, 100.0, "", "weight of DAISY in the matching cost")
+      .basic();
+  table.number("beta", options.beta, 0.0, 100.0, "", "weight of FPFH in the matching cost").basic();
 }
 
 namespace {

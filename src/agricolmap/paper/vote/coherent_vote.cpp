@@ -15,7 +15,8 @@
 namespace agricolmap::paper {
 
 void listOptions(OptionTable& table, VoteOptions& options) {
-  table.number("step", options.step, 0.1, 100.0, "cells", "t_f in the paper: step of the vote");
+  table.number("step", options.step, 0.1, 100.0, "cells", "t_f in the paper: step of the vote")
+      .basic();
   table.number("coarse", options.coarse, 1.0, 100.0, "t_f",
                "step of the search over heading and scales");
   table.number("tolerance", options.tolerance, 0.5, 100.0, "t_f",
@@ -274,7 +275,6 @@ VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& 
 
 std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
                                          double cell, const VoteOptions& options) {
-  checkOptions(options);
   const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
   // The next placement is sought among the matches that those before leave unexplained.
   std::vector<Match> left(matches.begin(), matches.end());

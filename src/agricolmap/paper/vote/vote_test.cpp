@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "agricolmap/core/angles.hpp"
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
@@ -112,9 +111,6 @@ TEST(CoherentVote, FindsNothingInNoiseAndNothingInNothing) {
   for (const auto& placement : voteCoherent(noise.matches, paperSpace(), kCell, {})) {
     EXPECT_LT(placement.inliers.size(), noise.matches.size() / 100);
   }
-  VoteOptions bad;
-  bad.step = -1.0;
-  EXPECT_THROW(voteCoherent({}, paperSpace(), kCell, bad), UsageError);
 }
 
 TEST(CoherentVote, SameOnAnyNumberOfThreads) {

@@ -26,11 +26,14 @@ StripPlace placeOnMosaic(const OrthoField& field, const OrthoScene& scene,
   const Eigen::Vector2d size(scene.width(), scene.height());
   const double heading = stripHeading(options.ugv, field.row_heading);
   if (stripRoom(options.ugv, size, heading).minCoeff() < 0.0) {
-    throw InputError(fmt::format(
-        "{}: {:.1f} x {:.1f} m of it are too small for a strip of {} x {} m at {:.0f} degrees; "
-        "shorten ugv.length and ugv.width, change ugv.heading_deg, or take more of the mosaic: "
-        "field.width and field.height or --window",
-        field.name, size.x(), size.y(), options.ugv.length, options.ugv.width, degrees(heading)));
+    throw InputError(
+        fmt::format(
+            "{}: {:.1f} x {:.1f} m of it are too small for a strip of {} x {} m at {:.0f} degrees; "
+            "shorten ugv.length and ugv.width, change ugv.heading_deg, or take more of the mosaic: "
+            "field.width and field.height, or a window of it",
+            field.name, size.x(), size.y(), options.ugv.length, options.ugv.width,
+            degrees(heading)),
+        Remedy::kWindow);
   }
   for (std::uint64_t attempt = 0; attempt < 500; ++attempt) {
     const StripPlace strip =

@@ -19,8 +19,10 @@ namespace agricolmap::simulate {
 
 void listOptions(OptionTable& table, OrthoFileOptions& options) {
   listOptions(table, options.raster);
-  table.number("gsd", options.gsd, 0.0, 0.1, "m",
-               "size of a pixel of the mosaic; 0: as its georeference says");
+  table
+      .number("gsd", options.gsd, 0.0, 0.1, "m",
+              "size of a pixel of the mosaic; 0: as its georeference says")
+      .basic();
 }
 
 namespace {
@@ -47,13 +49,16 @@ Eigen::Vector2d pixelSize(const io::RasterPlace& place, const std::string& name,
     size = {pixel(0, 0), -pixel(1, 1)};
     if (gsd > 0.0 && std::abs(gsd / size.y() - 1.0) > kSameGsd) {
       throw InputError(
-          fmt::format("{}: its georeference says pixels of {:.6g} m, not {:.6g} m; leave out --gsd",
-                      name, size.y(), gsd));
+          fmt::format("{}: its georeference says pixels of {:.6g} m, not {:.6g} m; leave it out",
+                      name, size.y(), gsd),
+          Remedy::kPixelSize);
     }
   } else if (gsd <= 0.0) {
-    throw InputError(fmt::format(
-        "{}: has no georeference, so the size of its pixels is unknown; give it with --gsd METRES",
-        name));
+    throw InputError(
+        fmt::format(
+            "{}: has no georeference, so the size of its pixels is unknown; give it in metres",
+            name),
+        Remedy::kPixelSize);
   }
   if (size.maxCoeff() > kCoarsest) {
     throw InputError(fmt::format("{}: pixels of {:.3g} m show no plants; at most {} m will do",
@@ -285,16 +290,18 @@ OrthoField readOrtho(const OrthoFiles& files, const OrthoFileOptions& options,
   }
   if (!files.dtm.empty() && files.dsm.empty()) {
     throw UsageError(
-        fmt::format("{}: a terrain model needs a surface model, too: --dsm", files.dtm.string()));
+        fmt::format("{}: a terrain model needs a surface model, too", files.dtm.string()),
+        Remedy::kSurfaceModel);
   }
   const double pixels = window ? 1.0 * window->cols * window->rows : 1.0 * shape.cols * shape.rows;
   if (pixels > kMaxFieldPixels) {
     throw InputError(
         fmt::format("{}: a field of {:.0f} million pixels is too large to simulate (limit {:.0f} "
                     "million); take "
-                    "a smaller --window or field.width and field.height, or thin the mosaic with "
+                    "a smaller window or field.width and field.height, or thin the mosaic with "
                     "gdal_translate -outsize",
-                    shape.name, pixels / 1e6, kMaxFieldPixels / 1e6));
+                    shape.name, pixels / 1e6, kMaxFieldPixels / 1e6),
+        Remedy::kWindow);
   }
   io::RasterImage mosaic = io::readRaster(files.ortho, options.raster, {.window = window});
   if (!georeferenced) {

@@ -126,7 +126,7 @@ TEST(ReadOrtho, NeedsAPixelSizeExactlyWhereThereIsNoGeoreference) {
   bare.georeferenced = false;
   bare.epsg = 0;
   const auto path = writeSheet(dir / "bare.tif", bare);
-  expectError<InputError>([&] { readOrtho({path, {}, {}}); }, {"bare.tif", "--gsd"});
+  expectError<InputError>([&] { readOrtho({path, {}, {}}); }, {"bare.tif", "size of its pixels"});
   OrthoFileOptions options;
   options.gsd = 0.015;
   const OrthoField field = readOrtho({path, {}, {}}, options);
@@ -142,7 +142,7 @@ TEST(ReadOrtho, NeedsAPixelSizeExactlyWhereThereIsNoGeoreference) {
       [&] {
         readOrtho({writeSheet(dir / "o.tif", mosaic()), {}, {}}, options);
       },
-      {"o.tif", "0.02", "0.015", "--gsd"});
+      {"o.tif", "0.02", "0.015", "leave it out"});
 }
 
 TEST(ReadOrtho, RefusesWhatItCannotPlace) {
@@ -184,7 +184,11 @@ TEST(ReadOrtho, RefusesWhatItCannotPlace) {
         readOrtho({ortho, writeSheet(dir / "zone.tif", sheet), {}});
       },
       {"zone.tif", "coordinate systems"});
-  expectError<UsageError>([&] { readOrtho({ortho, {}, dir / "t.tif"}); }, {"t.tif", "--dsm"});
+  expectError<UsageError>(
+      [&] {
+        readOrtho({ortho, {}, dir / "t.tif"});
+      },
+      {"t.tif", "surface model"});
   expectError<InputError>([&] { readOrtho({dir / "none.tif", {}, {}}); }, {"none.tif"});
 }
 
@@ -264,11 +268,11 @@ TEST(FindRowHeading, FindsRowsAtAnyHeading) {
 
 TEST(FindRowHeading, SaysWhenNoRowsStandOut) {
   OrthoField field = rowField(0.0, 2.0F);  // soil only
-  expectError<InputError>([&] { findRowHeading(field); }, {"rows", "--row_heading"});
+  expectError<InputError>([&] { findRowHeading(field); }, {"rows", "counter-clockwise"});
   field.colour = Raster<Rgb>(400, 600, Rgb{90, 90, 90});
-  expectError<InputError>([&] { findRowHeading(field); }, {"rows", "--row_heading"});
+  expectError<InputError>([&] { findRowHeading(field); }, {"rows", "counter-clockwise"});
   field.colour = Raster<Rgb>(1, 2);
-  expectError<InputError>([&] { findRowHeading(field); }, {"rows", "--row_heading"});
+  expectError<InputError>([&] { findRowHeading(field); }, {"rows", "counter-clockwise"});
 }
 
 }  // namespace

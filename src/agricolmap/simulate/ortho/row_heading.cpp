@@ -148,10 +148,12 @@ double findRowHeading(const OrthoField& field) {
   const double peak = *best;
   const double coarse = -quarter + kCoarseStep * static_cast<double>(best - shares.begin());
   if (!(peak > kLeastContrast * median(shares))) {
-    throw InputError(fmt::format(
-        "{}: no direction of plant rows stands out; give it with --row_heading DEGREES "
-        "(counter-clockwise from east), or look elsewhere with --window or another --seed",
-        field.name));
+    throw InputError(
+        fmt::format(
+            "{}: no direction of plant rows stands out; give it in degrees "
+            "counter-clockwise from east, or look elsewhere: in another window, or by another seed",
+            field.name),
+        Remedy::kRowHeading);
   }
   const int side = static_cast<int>(std::lround(kCoarseStep / kFineStep));
   const std::vector<double> near =

@@ -1,0 +1,149 @@
+// Every option of a registration at both of its limits, on a pair so small that all of them take
+// minutes: a result or a clear error, never a crash, never a number that is none.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "agricolmap/config/text.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/simulate/simulate.hpp"
+
+namespace agricolmap {
+namespace {
+
+using pipeline::Registration;
+using pipeline::RegistrationOptions;
+
+/// What one registration of so small a pair may hold at most [bytes]; more is a limit that no
+/// machine meets. The sanitizers reserve far more than they use.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr rlim_t kMostMemory = rlim_t{4} << 30;
+#else
+constexpr rlim_t kMostMemory = RLIM_INFINITY;
+#endif
+
+const simulate::SimulatedPair& tinyPair() {
+  static const simulate::SimulatedPair pair = [] {
+    simulate::SimulationOptions options = simulate::cropPreset(simulate::Crop::kSugarBeet10m);
+    options.field.width = 8.0;
+    options.field.height = 8.0;
+    options.uav.gsd = 0.025;
+    options.ugv.length = 4.0;
+    options.ugv.width = 1.5;
+    options.ugv.spacing = 0.012;
+    options.seed = 5;
+    return simulate::simulatePair(options);
+  }();
+  return pair;
+}
+
+Registration registerTiny(const RegistrationOptions& options) {
+  const simulate::SimulatedPair& pair = tinyPair();
+  StageTimes times;
+  return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+}
+
+std::vector<std::string> allPaths() {
+  RegistrationOptions options;
+  std::vector<std::string> paths;
+  for (const OptionField& field : optionTable(options).fields()) paths.push_back(field.path);
+  return paths;
+}
+
+/// Its limits; of a choice all values.
+std::vector<std::string> extremesOf(const OptionField& field) {
+  if (const auto* choice = std::get_if<ChoiceRef>(&field.value)) return choice->names;
+  if (std::holds_alternative<bool*>(field.value)) return {"false", "true"};
+  return {fmt::format("{}", field.low), fmt::format("{}", field.high)};
+}
+
+/// The preset under which the option at `path` has an effect.
+RegistrationOptions presetFor(const std::string& path) {
+  for (const char* name : {"default", "paper"}) {
+    RegistrationOptions options = pipeline::preset(name);
+    if (pipeline::missingFor(options, path).empty()) return options;
+  }
+  throw UsageError(path + " has an effect under no preset");
+}
+
+void expectSound(const Registration& result) {
+  EXPECT_FALSE(result.verdict.reasons.empty());
+  for (const double p : {result.verdict.probability, result.verdict.plane_probability}) {
+    EXPECT_GE(p, 0.0);
+    EXPECT_LE(p, 1.0);
+  }
+  if (!result.has_transform) {
+    EXPECT_EQ(result.verdict.status, verdict::Status::kRejected);
+    return;
+  }
+  EXPECT_TRUE(result.fixed_from_moving.matrix().allFinite());
+  EXPECT_TRUE(std::isfinite(result.evidence.significance));
+  EXPECT_TRUE(std::isfinite(result.evidence.uniqueness));
+}
+
+class LimitsTest : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    const rlimit limit{kMostMemory, kMostMemory};
+    if (kMostMemory != RLIM_INFINITY) ASSERT_EQ(::setrlimit(RLIMIT_AS, &limit), 0);
+  }
+};
+
+TEST_P(LimitsTest, GivesAResultOrAClearError) {
+  RegistrationOptions options = presetFor(GetParam());
+  const OptionTable table = optionTable(options);
+  const OptionField& field = *table.find(GetParam());
+  for (const std::string& value : extremesOf(field)) {
+    SCOPED_TRACE(field.path + " = " + value);
+    config::parseOption(field, value)();
+    try {
+      expectSound(registerTiny(options));
+    } catch (const Error& error) {
+      // Any other exception, running out of memory among them, fails the test.
+      EXPECT_TRUE(error.kind() == ErrorKind::kUsage || error.kind() == ErrorKind::kInput);
+      EXPECT_FALSE(std::string(error.what()).empty());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, LimitsTest, testing::ValuesIn(allPaths()),
+                         [](const testing::TestParamInfo<std::string>& test) {
+                           std::string name = test.param;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
+TEST(LimitsTest, ThePairIsOneThatCanBeRegistered) {
+  for (const char* name : {"default", "paper"}) {
+    EXPECT_TRUE(registerTiny(pipeline::preset(name)).has_transform) << name;
+  }
+}
+
+/// With every option at a limit that has no effect by missingFor().
+TEST(LimitsTest, WhatIsRefusedForDoingNothingDoesNothing) {
+  for (const char* name : {"default", "paper"}) {
+    const RegistrationOptions usual = pipeline::preset(name);
+    const Registration before = registerTiny(usual);
+    for (const bool high : {false, true}) {
+      RegistrationOptions options = usual;
+      const OptionTable table = optionTable(options);
+      for (const OptionField& field : table.fields()) {
+        const std::vector<std::string> extremes = extremesOf(field);
+        if (pipeline::missingFor(usual, field.path).empty()) continue;
+        config::parseOption(field, high ? extremes.back() : extremes.front())();
+      }
+      const Registration after = registerTiny(options);
+      EXPECT_EQ(after.fixed_from_moving.matrix(), before.fixed_from_moving.matrix()) << name;
+      EXPECT_EQ(after.verdict.probability, before.verdict.probability) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace agricolmap
