@@ -140,8 +140,6 @@ struct CellSum {
   float height = 0.0F;
   float exg = 0.0F;
   std::array<float, 3> colour{};
-  float nearest_distance = std::numeric_limits<float>::max();
-  std::uint32_t nearest = 0;
 };
 
 void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_row, int cols,
@@ -165,10 +163,6 @@ void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_ro
       sum.colour[1] += weight * colour.g;
       sum.colour[2] += weight * colour.b;
     }
-    if (distance2 < sum.nearest_distance) {
-      sum.nearest_distance = distance2;
-      sum.nearest = p->index;
-    }
   }
 }
 
@@ -185,7 +179,6 @@ void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMa
       map.colour[i] = {static_cast<std::uint8_t>(scale * sum.colour[0] + 0.5F),
                        static_cast<std::uint8_t>(scale * sum.colour[1] + 0.5F),
                        static_cast<std::uint8_t>(scale * sum.colour[2] + 0.5F)};
-      map.nearest[i] = sum.nearest;
     }
   }
 }
@@ -214,7 +207,6 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
   map.height = Raster<float>(rows, cols);
   map.exg = Raster<float>(rows, cols);
   map.colour = Raster<Rgb>(rows, cols);
-  map.nearest = Raster<std::uint32_t>(rows, cols);
   parallelFor(bands.begin.size() - 1, [&](std::size_t band) {
     const int first_row = static_cast<int>(band) * kBandRows;
     const int band_rows = std::min(kBandRows, rows - first_row);
@@ -287,7 +279,6 @@ GridMap croppedMap(const GridMap& map, const Box2& window) {
   cut(map.height, part.height);
   cut(map.exg, part.exg);
   cut(map.colour, part.colour);
-  cut(map.nearest, part.nearest);
   part.points = map.points;
   part.filled = static_cast<std::size_t>(
       std::count_if(part.weight.begin(), part.weight.end(), [](float w) { return w > 0.0F; }));

@@ -52,7 +52,6 @@ TEST(GridMap, WeighsPointsByTheirDistanceToTheCellCentre) {
   const double far = std::exp(-0.5 * 0.009 * 0.009 / 1e-4);
   EXPECT_NEAR(map.height(0, 0), (near * 1 + far * 3) / (near + far), 1e-4);
   EXPECT_NEAR(map.exg(0, 0), (near * 2 - far) / (near + far), 1e-4);
-  EXPECT_EQ(map.nearest(0, 0), 0U);
 }
 
 TEST(GridMap, CountsWhatFallsInside) {
@@ -73,7 +72,7 @@ TEST(GridMap, IsTheSameOnOneThread) {
   const GridMap one = makeGridMap(cloud, Eigen::Affine3d::Identity(), window, {});
   EXPECT_TRUE(std::equal(many.height.begin(), many.height.end(), one.height.begin()));
   EXPECT_TRUE(std::equal(many.exg.begin(), many.exg.end(), one.exg.begin()));
-  EXPECT_TRUE(std::equal(many.nearest.begin(), many.nearest.end(), one.nearest.begin()));
+  EXPECT_TRUE(std::equal(many.colour.begin(), many.colour.end(), one.colour.begin()));
 }
 
 TEST(GridMap, CroppedIsTheSameInItsWindow) {
@@ -88,7 +87,7 @@ TEST(GridMap, CroppedIsTheSameInItsWindow) {
       const int row = static_cast<int>(std::lround(there.y()));
       const int col = static_cast<int>(std::lround(there.x()));
       ASSERT_EQ(part.height(r, c), map.height(row, col));
-      ASSERT_EQ(part.nearest(r, c), map.nearest(row, col));
+      ASSERT_EQ(part.colour(r, c), map.colour(row, col));
     }
   }
   EXPECT_EQ(croppedMap(map, box(10, 10, 11, 11)).weight.size(), 0U);

@@ -19,7 +19,6 @@ GridMap mapWithShadow() {
   map.exg = Raster<float>(40, 40, kSoil);
   map.height = Raster<float>(40, 40, 0.01F);
   map.colour = Raster<Rgb>(40, 40);
-  map.nearest = Raster<std::uint32_t>(40, 40);
   for (int r = 0; r < 40; ++r) {
     for (int c = 20; c < 27; ++c) {
       map.exg(r, c) = kPlant;
