@@ -14,7 +14,7 @@ namespace agricolmap::map {
 
 void describe(OptionTable& table, GridOptions& options) {
   table.number("cell", options.cell, 0.005, 1.0, "m", "side of a grid cell, s in the paper");
-  table.number("sigma", options.sigma, 0.001, 10.0, "m",
+  table.number("sigma", options.sigma, 0.0001, 10.0, "m",
                "deviation of the Gaussian weight around a cell's centre, sigma_avg in the paper");
   table.choice("exg", options.exg, {"plain", "chromatic"},
                "Excess Green on raw colours (the paper's) or on chromatic coordinates");
@@ -34,6 +34,9 @@ namespace {
 constexpr int kBandRows = 16;
 constexpr std::size_t kChunk = 1U << 16;
 constexpr double kMaxCells = 4e8;
+/// Farther from a cell's centre than 11 deviations all points weigh alike: sums of such weights are
+/// still normal floats, and their quotients are numbers.
+constexpr float kLeastExponent = -60.0F;
 
 GridFrame frameFor(const Box2& window, double cell) {
   GridFrame frame;
@@ -152,7 +155,7 @@ void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_ro
     const float du = p->u - static_cast<float>(col) - 0.5F;
     const float dv = p->v - static_cast<float>(row) - 0.5F;
     const float distance2 = du * du + dv * dv;
-    const float weight = std::exp(cells2_to_exponent * distance2);
+    const float weight = std::exp(std::max(kLeastExponent, cells2_to_exponent * distance2));
     CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * cols + col];
     sum.weight += weight;
     sum.height += weight * p->z;

@@ -54,6 +54,27 @@ TEST(GridMap, WeighsPointsByTheirDistanceToTheCellCentre) {
   EXPECT_NEAR(map.exg(0, 0), (near * 2 - far) / (near + far), 1e-4);
 }
 
+// With a narrow Gaussian the weights of points far from the centre are no floats any more.
+TEST(GridMap, HoldsNumbersForAnyOptionsWithinTheirLimits) {
+  const Cloud cloud = randomCloud(20000);
+  for (const auto& [cell, sigma] : {std::pair{0.02, 0.0001}, {0.02, 0.001}, {1.0, 0.04}}) {
+    const GridMap map = makeGridMap(cloud, Eigen::Affine3d::Identity(), box(0, 0, 3, 2),
+                                    {.cell = cell, .sigma = sigma});
+    std::size_t filled = 0;
+    for (std::size_t i = 0; i < map.height.size(); ++i) {
+      if (!map.valid(i)) continue;
+      ++filled;
+      // Heights are from 0 to 0.1 m.
+      ASSERT_TRUE(map.height[i] >= -1e-6F && map.height[i] <= 0.1001F)
+          << map.height[i] << " for sigma " << sigma;
+      ASSERT_TRUE(std::abs(map.exg[i]) <= 2.0F) << map.exg[i] << " for sigma " << sigma;
+    }
+    EXPECT_EQ(filled, map.filled);
+    // 1.3 points a small cell, and every cell that holds one has a height.
+    if (cell < 0.1) EXPECT_GT(filled, 10000U);
+  }
+}
+
 TEST(GridMap, CountsWhatFallsInside) {
   const Cloud cloud = randomCloud(20000);
   const GridMap map = makeGridMap(cloud, Eigen::Affine3d::Identity(), box(1, 0, 2, 2), {});
