@@ -139,6 +139,7 @@ Bands sortIntoBands(const Cloud& cloud, const GridFrame& frame, const Locator& l
 
 /// Weighted sums of one cell.
 struct CellSum {
+  float points = 0.0F;  ///< exact up to 16 million
   float weight = 0.0F;
   float height = 0.0F;
   float exg = 0.0F;
@@ -157,6 +158,7 @@ void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_ro
     const float distance2 = du * du + dv * dv;
     const float weight = std::exp(std::max(kLeastExponent, cells2_to_exponent * distance2));
     CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * cols + col];
+    sum.points += 1.0F;
     sum.weight += weight;
     sum.height += weight * p->z;
     if (cloud.hasColour()) {
@@ -173,10 +175,10 @@ void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMa
   for (int row = first_row; row < first_row + rows; ++row) {
     for (int col = 0; col < map.frame.cols; ++col) {
       const CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * map.frame.cols + col];
-      if (sum.weight <= 0.0F) continue;
+      if (sum.points <= 0.0F) continue;
       const std::size_t i = map.weight.index(row, col);
       const float scale = 1.0F / sum.weight;
-      map.weight[i] = sum.weight;
+      map.weight[i] = sum.points;
       map.height[i] = scale * sum.height;
       map.exg[i] = scale * sum.exg;
       map.colour[i] = {static_cast<std::uint8_t>(scale * sum.colour[0] + 0.5F),

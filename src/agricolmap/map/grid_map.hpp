@@ -33,7 +33,7 @@ float excessGreen(Rgb colour, ExgKind kind);
 /// mean nothing. Coordinates are those of the levelled frame.
 struct GridMap {
   GridFrame frame;
-  Raster<float> weight;    ///< sum of the points' Gaussian weights, 0 = empty
+  Raster<float> weight;    ///< points that the cell's values rest on, 0 = empty
   Raster<float> height;    ///< mean height above the levelled ground plane [m]
   Raster<float> exg;       ///< mean Excess Green
   Raster<Rgb> colour;      ///< mean colour

@@ -52,6 +52,7 @@ TEST(GridMap, WeighsPointsByTheirDistanceToTheCellCentre) {
   const double far = std::exp(-0.5 * 0.009 * 0.009 / 1e-4);
   EXPECT_NEAR(map.height(0, 0), (near * 1 + far * 3) / (near + far), 1e-4);
   EXPECT_NEAR(map.exg(0, 0), (near * 2 - far) / (near + far), 1e-4);
+  EXPECT_EQ(map.weight(0, 0), 2.0F);
 }
 
 // With a narrow Gaussian the weights of points far from the centre are no floats any more.
