@@ -33,7 +33,11 @@ namespace {
 
 constexpr int kBandRows = 16;
 constexpr std::size_t kChunk = 1U << 16;
-constexpr double kMaxCells = 4e8;
+/// What the rasters of a GridMap take.
+constexpr double kCellBytes = 3 * sizeof(float) + sizeof(Rgb);
+constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+/// Most memory one map may take: 11 ha in cells of 2 cm. The stages after it take more.
+constexpr double kMostMapBytes = 4.0 * kGiB;
 /// Farther from a cell's centre than 11 deviations all points weigh alike: sums of such weights are
 /// still normal floats, and their quotients are numbers.
 constexpr float kLeastExponent = -60.0F;
@@ -44,11 +48,14 @@ GridFrame frameFor(const Box2& window, double cell) {
   const Eigen::Array2d low = (window.min().array() / cell).floor();
   const Eigen::Array2d high = (window.max().array() / cell).ceil().max(low + 1.0);
   const Eigen::Array2d count = high - low;
-  if (!(count.prod() <= kMaxCells)) {
+  const double bytes = kCellBytes * count.prod();
+  if (!(bytes <= kMostMapBytes)) {
     throw InputError(fmt::format(
-        "a map of {:.0f} x {:.0f} m has too many cells of {} m (limit {:.0e}); crop the clouds, "
-        "tighten the prior or enlarge grid.cell",
-        window.sizes().x(), window.sizes().y(), cell, kMaxCells));
+        "a map of {:.0f} x {:.0f} m in cells of {:.3g} m takes {:.3g} GiB of memory (limit {:.3g} "
+        "GiB); crop the clouds, tighten the prior or enlarge grid.cell to {:.2g} m",
+        window.sizes().x(), window.sizes().y(), cell, bytes / kGiB, kMostMapBytes / kGiB,
+        // A little more, as borders are rounded to cells and the number to two digits.
+        1.1 * cell * std::sqrt(bytes / kMostMapBytes)));
   }
   frame.corner = (low * cell).matrix();
   frame.cols = static_cast<int>(count.x());

@@ -82,8 +82,20 @@ TEST(GridMap, CountsWhatFallsInside) {
   EXPECT_NEAR(static_cast<double>(map.points), 20000.0 / 3.0, 300);
   EXPECT_THROW(makeGridMap(cloud, Eigen::Affine3d::Identity(), box(10, 10, 11, 11), {}),
                InputError);
-  EXPECT_THROW(makeGridMap(cloud, Eigen::Affine3d::Identity(), box(0, 0, 1e6, 1e6), {}),
-               InputError);
+}
+
+TEST(GridMap, RefusesMapsThatTakeTooMuchMemoryAndNamesTheRemedy) {
+  const Cloud cloud = randomCloud(10);
+  for (const double side : {380.0, 1e6, 1e30}) {
+    try {
+      makeGridMap(cloud, Eigen::Affine3d::Identity(), box(0, 0, side, side), {});
+      FAIL() << side;
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      EXPECT_NE(what.find("limit 4 GiB"), std::string::npos) << what;
+      EXPECT_NE(what.find("grid.cell"), std::string::npos) << what;
+    }
+  }
 }
 
 TEST(GridMap, IsTheSameOnOneThread) {
