@@ -159,6 +159,31 @@ TEST_F(RegisterTest, LeavesOutPointsThatAreNotFinite) {
   EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
 }
 
+// Beside the strip, where its bounds, its middle and the grid would go by them.
+TEST_F(RegisterTest, FlyingPointsBesideTheStripChangeNothing) {
+  const PairFiles files = pair();
+  std::vector<PlyPoint> points = pointsOfPly(contentOf(files.ugv()));
+  const PlyPoint middle = points[points.size() / 2];
+  for (int i = 0; i < 20; ++i) {
+    const double distance = 20.0 + 37.0 * i / 19.0;
+    points.push_back({{middle.xyz[0] + distance * std::cos(0.9 * i),
+                       middle.xyz[1] + distance * std::sin(0.9 * i), middle.xyz[2] + 1.5},
+                      {120, 130, 90}});
+  }
+  const std::string ugv = write("ugv.ply", plyBytes(points));
+  const ProgramResult result =
+      runAgricolmap({"register", files.uav(), ugv, "--prior", files.prior(), "-o", inFolder("out"),
+                     "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  const nlohmann::json report = jsonOf(inFolder("out/registration.json"));
+  EXPECT_EQ(report.at("moving").at("stray_points"), 20);
+  EXPECT_EQ(report.at("moving").at("map").at("points").get<std::size_t>() + 20, points.size());
+  EXPECT_EQ(report.at("fixed").at("stray_points"), 0);
+  const nlohmann::json errors = errorsOf(inFolder("out/transform.txt"), files);
+  EXPECT_TRUE(errors.at("success").get<bool>()) << errors.dump();
+  EXPECT_LT(errors.at("rms_m").get<double>(), 0.03);
+}
+
 TEST_F(RegisterTest, UsesHeightsAloneWhenAsked) {
   const PairFiles files = pair();
   const std::string ugv =

@@ -232,31 +232,6 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
   return map;
 }
 
-double pointSpacing(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
-  constexpr double kBin = 0.5;  // [m]; coarse enough to hold some points of any map worth the name
-  constexpr std::size_t kMostSamples = 200'000;
-  constexpr double kMostBins = 1e8;
-  if (cloud.empty()) return 0.0;
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kMostSamples);
-  std::vector<Eigen::Vector2d> places;
-  places.reserve(cloud.size() / step + 1);
-  Box2 box;
-  for (std::size_t i = 0; i < cloud.size(); i += step) {
-    places.push_back((levelled_from_local * cloud.xyz[i].cast<double>()).head<2>() / kBin);
-    box.extend(places.back());
-  }
-  const double cols = std::floor(box.sizes().x()) + 1.0;
-  const double rows = std::floor(box.sizes().y()) + 1.0;
-  if (cols * rows > kMostBins) return 0.0;
-  std::vector<char> seen(static_cast<std::size_t>(cols * rows), 0);
-  for (const Eigen::Vector2d& place : places) {
-    const Eigen::Vector2d at = (place - box.min()).array().floor().matrix();
-    seen[static_cast<std::size_t>(at.y() * cols + at.x())] = 1;
-  }
-  const auto count = static_cast<double>(std::count(seen.begin(), seen.end(), 1));
-  return kBin * std::sqrt(count / static_cast<double>(cloud.size()));
-}
-
 GridOptions coarsened(const GridOptions& options, double spacing) {
   // 0.7: half of the cells filled, so that neighbours can be compared.
   const double factor = std::max(1.0, 0.7 * spacing / options.cell);

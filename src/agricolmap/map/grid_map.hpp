@@ -49,10 +49,6 @@ struct GridMap {
 /// Horizontal window of the levelled frame [m].
 using Box2 = Eigen::AlignedBox2d;
 
-/// Mean distance between neighbouring points, seen from above [m]: the root of the area that holds
-/// points over their number.
-double pointSpacing(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
-
 /// The options for clouds with points this far apart [m]: as they are, or, if they may be, coarser.
 GridOptions coarsened(const GridOptions& options, double spacing);
 

@@ -117,7 +117,7 @@ class Registrar {
   void prepare(const Eigen::Affine3d& guess) {
     const Eigen::Affine3d centred = centredGuess(fixed_, moving_, guess, options_.prior);
     times_.run("level", [&] { levelFixed(fixed_, options_.level, result_.frames); });
-    fixed_box_ = boundsOf(fixed_, result_.frames.levelled_from_fixed);
+    fixed_box_ = result_.frames.fixed_footprint.box;
     levelAndBound(centred);
     if (!options_.prior.scale_unknown) {
       requirePlausibleExtents(fixed_, moving_, fixed_box_, moving_box_);
@@ -138,18 +138,17 @@ class Registrar {
 
   /// Cells that both clouds fill.
   void chooseCells() {
-    double spacing = map::pointSpacing(fixed_, result_.frames.levelled_from_fixed);
+    double spacing = result_.frames.fixed_footprint.spacing();
     if (!options_.prior.scale_unknown) {
-      spacing = std::max(spacing, map::pointSpacing(moving_, result_.frames.levelled_from_moving));
+      spacing = std::max(spacing, result_.frames.moving_footprint.spacing());
     }
     grid_ = map::coarsened(options_.grid, spacing);
   }
 
   void levelAndBound(const Eigen::Affine3d& guess) {
-    times_.run("level", [&] {
-      levelMoving(fixed_, moving_, guess, options_.level, result_.frames);
-      moving_box_ = boundsOf(moving_, result_.frames.levelled_from_moving);
-    });
+    times_.run("level",
+               [&] { levelMoving(fixed_, moving_, guess, options_.level, result_.frames); });
+    moving_box_ = result_.frames.moving_footprint.box;
     result_.space = searchSpace(moving_box_, result_.frames, options_.prior);
   }
 

@@ -41,11 +41,13 @@ Json stringsJson(const std::vector<std::string>& strings) {
   return json;
 }
 
-Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::GridMap& map) {
+Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::Footprint& footprint,
+               const map::GridMap& map) {
   Json json;
   json["path"] = validUtf8(cloud.name);
   json["points"] = cloud.size();
   json["dropped_points"] = cloud.dropped_points;
+  json["stray_points"] = footprint.left_out;
   json["has_colour"] = cloud.hasColour();
   json["origin_m"] = vectorJson(cloud.origin);
   const Box3 box = boundingBox(cloud);
@@ -234,8 +236,10 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["residuals"] = residualsJson(registration);
   json["evidence"] = evidenceJson(registration.evidence);
   json["counts"] = numbersJson(registration.counts, "");
-  json["fixed"] = cloudJson(fixed, registration.frames.fixed, registration.fixed_map);
-  json["moving"] = cloudJson(moving, registration.frames.moving, registration.moving_map);
+  const pipeline::PairFrames& frames = registration.frames;
+  json["fixed"] = cloudJson(fixed, frames.fixed, frames.fixed_footprint, registration.fixed_map);
+  json["moving"] =
+      cloudJson(moving, frames.moving, frames.moving_footprint, registration.moving_map);
   json["times"] = timesJson(times);
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = threadsInForce(info.threads);

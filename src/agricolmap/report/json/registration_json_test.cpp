@@ -47,7 +47,8 @@ Json reportOf(const pipeline::Registration& registration) {
 }
 
 TEST(RegistrationJson, AcceptedHasEverything) {
-  const pipeline::Registration registration = testing::testRegistration();
+  pipeline::Registration registration = testing::testRegistration();
+  registration.frames.moving_footprint.left_out = 20;
   const Json json = reportOf(registration);
   EXPECT_EQ(json["status"], "accepted");
   EXPECT_EQ(json["reasons"].size(), 2U);
@@ -68,6 +69,8 @@ TEST(RegistrationJson, AcceptedHasEverything) {
   EXPECT_EQ(json["times"]["stages"]["level_s"], 0.0123);
   EXPECT_EQ(json["fixed"]["points"], 2);
   EXPECT_EQ(json["fixed"]["dropped_points"], 3);
+  EXPECT_EQ(json["fixed"]["stray_points"], 0);
+  EXPECT_EQ(json["moving"]["stray_points"], 20);
   EXPECT_EQ(json["fixed"]["has_colour"], false);
   EXPECT_EQ(json["moving"]["has_colour"], true);
   EXPECT_EQ(json["moving"]["box_max_m"][1], 5200002.2);
