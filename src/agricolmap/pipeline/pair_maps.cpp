@@ -82,11 +82,19 @@ map::Box2 reachableWindow(const map::Box2& moving, const SearchSpace& space, dou
   const double heading = space.uncertainty.heading_deg * std::numbers::pi / 180.0;
   const double stretch = std::exp(logScaleLimit(space.uncertainty));
   map::Box2 window;
-  for (const double yaw : {-heading, 0.0, heading}) {
-    for (int corner = 0; corner < 4; ++corner) {
-      const Eigen::Vector2d arm =
-          moving.corner(static_cast<map::Box2::CornerType>(corner)) - space.centre;
-      window.extend((space.centre + stretch * (rotation2(yaw) * arm)).eval());
+  for (int corner = 0; corner < 4; ++corner) {
+    const Eigen::Vector2d arm =
+        stretch * (moving.corner(static_cast<map::Box2::CornerType>(corner)) - space.centre);
+    for (const double yaw : {-heading, 0.0, heading}) {
+      window.extend((space.centre + rotation2(yaw) * arm).eval());
+    }
+    // Between these headings an arm reaches farthest where it comes to lie along an axis.
+    const double direction = std::atan2(arm.y(), arm.x());
+    for (int axis = 0; axis < 4; ++axis) {
+      const double along = 0.5 * std::numbers::pi * axis;
+      if (std::abs(std::remainder(along - direction, 2.0 * std::numbers::pi)) > heading) continue;
+      window.extend(
+          (space.centre + arm.norm() * Eigen::Vector2d(std::cos(along), std::sin(along))).eval());
     }
   }
   const double margin = space.uncertainty.translation + rim;
