@@ -95,6 +95,22 @@ TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
   EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(5.0, 1.1, 0.0)).z(), 0.0, 0.03);
 }
 
+// A cloud from rasters: every fifth column is a row of plants, and one point in five is looked at.
+TEST(Level, LooksAtAllColumnsOfACloudInRasterOrder) {
+  Random random(11);
+  Cloud cloud;
+  cloud.name = "raster";
+  constexpr int kSide = 1000;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      const double height = random.normal(0.01) + (col % 5 == 0 ? 0.3 : 0.0);
+      cloud.xyz.push_back(Eigen::Vector3d(0.02 * col, 0.02 * row, height).cast<float>());
+    }
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(10, 10, 0)).z(), 0.0, 0.03);
+}
+
 TEST(Level, RefusesCloudsThatAreNoMap) {
   Cloud cloud;
   cloud.name = "bad";
