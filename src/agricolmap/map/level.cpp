@@ -151,7 +151,8 @@ UnderCanopy levelBySupport(Eigen::Affine3d levelled, const LevelPoints& points,
     const SupportedPlane under = findPlaneUnder(low, centre, cell);
     makeLevel(under.plane, centre, levelled);
     result.share = under.support / static_cast<double>(low.size());
-    result.levelling = {levelled, tiltOf(levelled), under.plane.deviation, low.size(), true};
+    result.levelling = {levelled, tiltOf(levelled), under.plane.deviation, low.size(),
+                        true,     under.share};
     if (under.plane.slope_and_height.head<2>().norm() < kSettled) break;
   }
   result.height = (levelled * centre).z() - centre.z();

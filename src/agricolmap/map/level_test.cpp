@@ -90,6 +90,7 @@ TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
   }
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_TRUE(level.under_canopy);
+  EXPECT_LT(level.support, 0.5) << "holes are a few cells";
   EXPECT_LT(level.tilt, 0.01);
   EXPECT_LT(level.roughness, 0.03);
   EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(5.0, 1.1, 0.0)).z(), 0.0, 0.03);
@@ -109,6 +110,29 @@ TEST(Level, LooksAtAllColumnsOfACloudInRasterOrder) {
   }
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(10, 10, 0)).z(), 0.0, 0.03);
+}
+
+// Rough ground, nothing grows on it: the deviation is not that of the cells close to the plane
+// only.
+TEST(Level, SaysHowRoughTheGroundIs) {
+  Random random(12);
+  Cloud cloud;
+  cloud.name = "ploughed";
+  for (int row = 0; row < 60; ++row) {
+    for (int col = 0; col < 60; ++col) {
+      const double ground = random.normal(0.1);
+      for (int i = 0; i < 40; ++i) {
+        cloud.xyz.push_back(Eigen::Vector3d(0.5 * (col + random.uniform()),
+                                            0.5 * (row + random.uniform()),
+                                            ground + random.normal(0.005))
+                                .cast<float>());
+      }
+    }
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_GT(level.roughness, 0.07);
+  EXPECT_LT(level.roughness, 0.14);
+  if (level.under_canopy) EXPECT_LT(level.support, 0.7);
 }
 
 TEST(Level, RefusesCloudsThatAreNoMap) {

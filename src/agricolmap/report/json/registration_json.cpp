@@ -56,7 +56,8 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::F
   json["ground"] = {{"tilt_deg", number(levelling.tilt * kDegPerRad)},
                     {"roughness_m", number(levelling.roughness)},
                     {"cells", levelling.cells},
-                    {"under_canopy", levelling.under_canopy}};
+                    {"under_canopy", levelling.under_canopy},
+                    {"support", number(levelling.support)}};
   json["map"] = {{"cell_m", number(map.frame.cell)},
                  {"rows", map.frame.rows},
                  {"cols", map.frame.cols},
