@@ -156,6 +156,9 @@ TEST_F(RegisterTest, LeavesOutPointsThatAreNotFinite) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find(ugv), std::string::npos) << result.err;
   EXPECT_NE(result.err.find(std::to_string(spoilt) + " points"), std::string::npos) << result.err;
+  const nlohmann::json warnings = jsonOf(inFolder("out/registration.json")).at("warnings");
+  ASSERT_EQ(warnings.size(), 1U) << warnings;
+  EXPECT_NE(result.err.find(warnings[0].get<std::string>()), std::string::npos) << warnings;
   EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
 }
 

@@ -15,6 +15,7 @@ ExitCode runInfo(const std::string& path) {
   const Stopwatch watch;
   const Cloud cloud = io::readCloud(path);
   const double seconds = watch.seconds();
+  printWarnings(cloud.warnings);
   const Box3 box = boundingBox(cloud);
   const Eigen::Vector3d low = cloud.origin + box.min.cast<double>();
   const Eigen::Vector3d high = cloud.origin + box.max.cast<double>();

@@ -1,6 +1,5 @@
 // agricolmap register FIXED MOVING -o DIR
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <iostream>
 #include <memory>
@@ -109,12 +108,6 @@ void printSummary(const pipeline::Registration& result, const std::string& direc
   fmt::print("results in {}\n", directory);
 }
 
-void warnOfDropped(const Cloud& cloud) {
-  if (cloud.dropped_points == 0) return;
-  spdlog::warn("{}: {} points with NaN, infinite or absurd coordinates were left out", cloud.name,
-               cloud.dropped_points);
-}
-
 /// The command line as one line of text, quoted where a shell would need it.
 std::string commandText(const std::vector<std::string>& words) {
   std::string text;
@@ -182,8 +175,8 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
   info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
   const LoadedPair pair = times.run("read", [&] { return load(arguments); });
-  warnOfDropped(pair.fixed);
-  warnOfDropped(pair.moving);
+  printWarnings(pair.fixed.warnings);
+  printWarnings(pair.moving.warnings);
   const pipeline::Registration result =
       pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, times);
   info.pictures = writeResults(arguments, options, pair, result, output, times);

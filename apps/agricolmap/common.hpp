@@ -51,6 +51,9 @@ class Progress {
   bool active_;
 };
 
+/// To stderr, one line each, unless --quiet.
+void printWarnings(const std::vector<std::string>& warnings);
+
 /// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside
 /// each cloud (one that has none stands in world coordinates); else identity. Says which in
 /// `source`.

@@ -25,6 +25,7 @@ struct Cloud {
   std::vector<Eigen::Vector3f> xyz;                  ///< local coordinates [m]
   std::vector<Rgb> rgb;                              ///< sensor colours, 0–255
   std::size_t dropped_points = 0;                    ///< NaN/Inf points left out on reading
+  std::vector<std::string> warnings;                 ///< what its reader found odd, file named
 
   std::size_t size() const { return xyz.size(); }
   bool empty() const { return xyz.empty(); }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -57,16 +56,15 @@ Eigen::Vector3d chooseOrigin(const PointSource& source, const std::string& name)
   return origin;
 }
 
-void warnIfCoarse(const PointSource& source, const Eigen::Vector3d& origin,
-                  const std::string& name) {
-  const double far = origin.cwiseAbs().maxCoeff();
+void warnIfCoarse(const PointSource& source, Cloud& cloud) {
+  const double far = cloud.origin.cwiseAbs().maxCoeff();
   if (!source.floatCoordinates() || far <= kFarForFloat) return;
   const auto value = static_cast<float>(far);
   const float step = std::nextafter(value, std::numeric_limits<float>::infinity()) - value;
-  spdlog::warn(
+  cloud.warnings.push_back(fmt::format(
       "{}: coordinates around {:.0f} m are stored as 32-bit floats, in steps of {:.1f} cm; write "
       "them as double or subtract an offset (offset.xyz) before writing",
-      name, far, 100.0F * step);
+      cloud.name, far, 100.0F * step));
 }
 
 struct ColourRange {
@@ -154,7 +152,7 @@ Cloud assembleCloud(const PointSource& source, const std::string& name) {
   Cloud cloud;
   cloud.name = name;
   cloud.origin = chooseOrigin(source, name);
-  warnIfCoarse(source, cloud.origin, name);
+  warnIfCoarse(source, cloud);
   const ColourKind kind = source.colourKind();
   const float scale = isWide(kind) ? colourScale(source, name) : 1.0F;
   resizeInHugePages(cloud.xyz, source.points());
@@ -184,14 +182,25 @@ Cloud assembleCloud(const PointSource& source, const std::string& name) {
   });
   compact(source, kept, cloud);
   if (cloud.empty()) throw InputError(fmt::format("{}: no usable point is left", name));
+  if (cloud.dropped_points > 0) {
+    cloud.warnings.push_back(
+        fmt::format("{}: {} points with NaN, infinite or absurd coordinates were left out", name,
+                    cloud.dropped_points));
+  }
   const float far = *std::max_element(farthest.begin(), farthest.end());
   if (far > kFarForLocal) {
-    spdlog::warn(
-        "{}: some points lie {:.0f} km from the first one; remove such outliers, they "
-        "cost precision",
-        name, far / 1000.0F);
+    cloud.warnings.push_back(
+        fmt::format("{}: some points lie {:.0f} km from the first one; remove such outliers, they "
+                    "cost precision",
+                    name, far / 1000.0F));
   }
   return cloud;
+}
+
+void warnOfRest(std::size_t count, std::string_view unit, Cloud& cloud) {
+  if (count == 0) return;
+  cloud.warnings.push_back(
+      fmt::format("{}: {} {} after the last point, ignored", cloud.name, count, unit));
 }
 
 }  // namespace agricolmap::io

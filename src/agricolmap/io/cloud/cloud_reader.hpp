@@ -10,12 +10,9 @@
 #include <filesystem>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/cloud/read_options.hpp"
 
 namespace agricolmap::io {
-
-struct ReadOptions {
-  bool colours = true;  ///< read colours where the file has them
-};
 
 /// Reads a cloud; points in file order. `origin` is the first usable point rounded to whole metres.
 /// What floats lose against the file's doubles grows with the distance to it: 0.06 µm at 1 m, 4 µm

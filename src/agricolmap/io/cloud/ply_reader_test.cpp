@@ -1,10 +1,5 @@
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
-
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <sstream>
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -89,25 +84,12 @@ TEST(PlyReader, KeepsUtmCoordinatesToAMicrometre) {
   EXPECT_TRUE(cloud.rgb.empty());
 }
 
-/// What is logged while it lives.
-class LogCapture {
- public:
-  LogCapture() : before_(spdlog::default_logger()) {
-    const auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>("capture", sink));
-  }
-  ~LogCapture() { spdlog::set_default_logger(before_); }
-  LogCapture(const LogCapture&) = delete;
-  LogCapture& operator=(const LogCapture&) = delete;
-  bool contains(const std::string& part) const {
-    return text_.str().find(part) != std::string::npos;
-  }
-  bool empty() const { return text_.str().empty(); }
-
- private:
-  std::ostringstream text_;
-  std::shared_ptr<spdlog::logger> before_;
-};
+/// All warnings of a cloud in one text.
+std::string warningsOf(const Cloud& cloud) {
+  std::string text;
+  for (const std::string& warning : cloud.warnings) text += warning + "\n";
+  return text;
+}
 
 TEST(PlyReader, WarnsOfCoarseFloatsAndOutliers) {
   const TempDir dir;
@@ -116,19 +98,26 @@ TEST(PlyReader, WarnsOfCoarseFloatsAndOutliers) {
     for (const float v : {1.0F, y, 2.0F, 1.0F, y, 2.0F}) append(content, v);
     return content;
   };
-  {
-    const LogCapture log;
-    read(dir, file(5000000.0F));
-    EXPECT_TRUE(log.contains("in steps of 50.0 cm"));
-    EXPECT_TRUE(log.contains("double"));
-  }
-  {
-    const LogCapture log;
-    read(dir, file(99000.0F));
-    EXPECT_TRUE(log.empty());
-    read(dir, header("ascii", "element vertex 2\n" + kXyzFloat) + "0 0 0\n500000 5000000 0\n");
-    EXPECT_TRUE(log.contains("5000 km from the first one"));
-  }
+  const std::string coarse = warningsOf(read(dir, file(5000000.0F)));
+  EXPECT_NE(coarse.find("cloud.ply: "), std::string::npos) << coarse;
+  EXPECT_NE(coarse.find("in steps of 50.0 cm"), std::string::npos) << coarse;
+  EXPECT_NE(coarse.find("double"), std::string::npos) << coarse;
+  EXPECT_EQ(warningsOf(read(dir, file(99000.0F))), "");
+  const std::string far = warningsOf(
+      read(dir, header("ascii", "element vertex 2\n" + kXyzFloat) + "0 0 0\n500000 5000000 0\n"));
+  EXPECT_NE(far.find("5000 km from the first one"), std::string::npos) << far;
+}
+
+TEST(PlyReader, WarnsOfWhatItIgnores) {
+  const TempDir dir;
+  const std::string rest = header("ascii", "element vertex 1\n" + kXyzFloat) + "0 1 2\n3 4 5\n";
+  EXPECT_NE(warningsOf(read(dir, rest)).find("1 lines after the last point"), std::string::npos);
+  std::string binary = header("binary_little_endian", "element vertex 1\n" + kXyzFloat);
+  EXPECT_NE(warningsOf(read(dir, binary + std::string(15, '\0'))).find("3 bytes after"),
+            std::string::npos);
+  const std::string part =
+      header("ascii", "element vertex 1\n" + kXyzFloat + "property uchar red\n") + "0 1 2 3\n";
+  EXPECT_NE(warningsOf(read(dir, part)).find("colours are incomplete"), std::string::npos);
 }
 
 TEST(PlyReader, ScalesWideColoursByTheFilesRange) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
@@ -104,5 +105,8 @@ double loadScalar(const std::byte* from, ScalarType type, bool swap);
 /// counted. Throws InputError naming `name` when no point is left or the colours fit no known
 /// range.
 Cloud assembleCloud(const PointSource& source, const std::string& name);
+
+/// Adds a warning to the cloud where `count` bytes or lines (`unit`) follow its last point.
+void warnOfRest(std::size_t count, std::string_view unit, Cloud& cloud);
 
 }  // namespace agricolmap::io

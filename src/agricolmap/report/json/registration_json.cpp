@@ -227,6 +227,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
+  std::vector<std::string> warnings = fixed.warnings;
+  warnings.insert(warnings.end(), moving.warnings.begin(), moving.warnings.end());
+  json["warnings"] = stringsJson(warnings);
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
   json["transform"] = transformJson(fixed, moving, registration);

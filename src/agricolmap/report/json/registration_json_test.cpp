@@ -33,6 +33,7 @@ Cloud testCloud(const std::string& name, bool coloured) {
   cloud.xyz = {{0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 0.5F}};
   if (coloured) cloud.rgb = {{1, 2, 3}, {4, 5, 6}};
   cloud.dropped_points = 3;
+  cloud.warnings = {name + ": 3 points were left out"};
   return cloud;
 }
 
@@ -52,6 +53,8 @@ TEST(RegistrationJson, AcceptedHasEverything) {
   const Json json = reportOf(registration);
   EXPECT_EQ(json["status"], "accepted");
   EXPECT_EQ(json["reasons"].size(), 2U);
+  EXPECT_EQ(json["warnings"],
+            (Json{"uav.ply: 3 points were left out", "\xEF\xBF\xBD.ply: 3 points were left out"}));
   for (const char* key :
        {"yaw_deg", "tilt_x_deg", "tilt_y_deg", "scale_x", "scale_y", "scale_z", "shear"}) {
     EXPECT_TRUE(json["transform"]["parts"][key].is_number()) << key;
