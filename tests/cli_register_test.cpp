@@ -162,6 +162,32 @@ TEST_F(RegisterTest, LeavesOutPointsThatAreNotFinite) {
   EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
 }
 
+// Kept about it, the others would come in steps of half a metre.
+TEST_F(RegisterTest, APlaceholderAtTheHeadOfAUtmCloudChangesNothing) {
+  const PairFiles files = pair("georeferenced");
+  const auto with_zero = [&](const std::string& path, const std::string& name) {
+    std::vector<PlyPoint> points = pointsOfPly(contentOf(path));
+    points.insert(points.begin(), PlyPoint{});
+    return write(name, plyBytes(points));
+  };
+  const std::string clean[] = {files.uav(), files.ugv()};
+  const std::string spoilt[] = {with_zero(files.uav(), "uav.ply"),
+                                with_zero(files.ugv(), "ugv.ply")};
+  const auto run = [&](const std::string& uav, const std::string& ugv, const std::string& out) {
+    const ProgramResult result = runAgricolmap(
+        {"register", uav, ugv, "--prior", files.prior(), "-o", inFolder(out), "--no-pictures"});
+    EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+    return result;
+  };
+  run(clean[0], clean[1], "clean");
+  EXPECT_NE(run(spoilt[0], clean[1], "uav").err.find("1 points were left out"), std::string::npos);
+  EXPECT_NE(run(clean[0], spoilt[1], "ugv").err.find("1 points were left out"), std::string::npos);
+  const std::string transform = contentOf(inFolder("clean/transform.txt"));
+  EXPECT_EQ(contentOf(inFolder("uav/transform.txt")), transform);
+  EXPECT_EQ(contentOf(inFolder("ugv/transform.txt")), transform);
+  EXPECT_EQ(jsonOf(inFolder("ugv/registration.json")).at("moving").at("dropped_points"), 1);
+}
+
 // Beside the strip, where its bounds, its middle and the grid would go by them.
 TEST_F(RegisterTest, FlyingPointsBesideTheStripChangeNothing) {
   const PairFiles files = pair();
