@@ -72,7 +72,7 @@ TEST(GridMap, HoldsNumbersForAnyOptionsWithinTheirLimits) {
     }
     EXPECT_EQ(filled, map.filled);
     // 1.3 points a small cell, and every cell that holds one has a height.
-    if (cell < 0.1) EXPECT_GT(filled, 10000U);
+    EXPECT_GT(filled, cell < 0.1 ? 10000U : 5U);
   }
 }
 
