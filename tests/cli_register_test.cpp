@@ -156,7 +156,61 @@ TEST_F(RegisterTest, LeavesOutPointsThatAreNotFinite) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find(ugv), std::string::npos) << result.err;
   EXPECT_NE(result.err.find(std::to_string(spoilt) + " points"), std::string::npos) << result.err;
+  const nlohmann::json warnings = jsonOf(inFolder("out/registration.json")).at("warnings");
+  ASSERT_EQ(warnings.size(), 1U) << warnings;
+  EXPECT_NE(result.err.find(warnings[0].get<std::string>()), std::string::npos) << warnings;
   EXPECT_TRUE(errorsOf(inFolder("out/transform.txt"), files).at("success").get<bool>());
+}
+
+// Kept about it, the others would come in steps of half a metre.
+TEST_F(RegisterTest, APlaceholderAtTheHeadOfAUtmCloudChangesNothing) {
+  const PairFiles files = pair("georeferenced");
+  const auto with_zero = [&](const std::string& path, const std::string& name) {
+    std::vector<PlyPoint> points = pointsOfPly(contentOf(path));
+    points.insert(points.begin(), PlyPoint{});
+    return write(name, plyBytes(points));
+  };
+  const std::string clean[] = {files.uav(), files.ugv()};
+  const std::string spoilt[] = {with_zero(files.uav(), "uav.ply"),
+                                with_zero(files.ugv(), "ugv.ply")};
+  const auto run = [&](const std::string& uav, const std::string& ugv, const std::string& out) {
+    const ProgramResult result = runAgricolmap(
+        {"register", uav, ugv, "--prior", files.prior(), "-o", inFolder(out), "--no-pictures"});
+    EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+    return result;
+  };
+  run(clean[0], clean[1], "clean");
+  EXPECT_NE(run(spoilt[0], clean[1], "uav").err.find("1 points were left out"), std::string::npos);
+  EXPECT_NE(run(clean[0], spoilt[1], "ugv").err.find("1 points were left out"), std::string::npos);
+  const std::string transform = contentOf(inFolder("clean/transform.txt"));
+  EXPECT_EQ(contentOf(inFolder("uav/transform.txt")), transform);
+  EXPECT_EQ(contentOf(inFolder("ugv/transform.txt")), transform);
+  EXPECT_EQ(jsonOf(inFolder("ugv/registration.json")).at("moving").at("dropped_points"), 1);
+}
+
+// Beside the strip, where its bounds, its middle and the grid would go by them.
+TEST_F(RegisterTest, FlyingPointsBesideTheStripChangeNothing) {
+  const PairFiles files = pair();
+  std::vector<PlyPoint> points = pointsOfPly(contentOf(files.ugv()));
+  const PlyPoint middle = points[points.size() / 2];
+  for (int i = 0; i < 20; ++i) {
+    const double distance = 20.0 + 37.0 * i / 19.0;
+    points.push_back({{middle.xyz[0] + distance * std::cos(0.9 * i),
+                       middle.xyz[1] + distance * std::sin(0.9 * i), middle.xyz[2] + 1.5},
+                      {120, 130, 90}});
+  }
+  const std::string ugv = write("ugv.ply", plyBytes(points));
+  const ProgramResult result =
+      runAgricolmap({"register", files.uav(), ugv, "--prior", files.prior(), "-o", inFolder("out"),
+                     "--no-pictures"});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  const nlohmann::json report = jsonOf(inFolder("out/registration.json"));
+  EXPECT_EQ(report.at("moving").at("stray_points"), 20);
+  EXPECT_EQ(report.at("moving").at("map").at("points").get<std::size_t>() + 20, points.size());
+  EXPECT_EQ(report.at("fixed").at("stray_points"), 0);
+  const nlohmann::json errors = errorsOf(inFolder("out/transform.txt"), files);
+  EXPECT_TRUE(errors.at("success").get<bool>()) << errors.dump();
+  EXPECT_LT(errors.at("rms_m").get<double>(), 0.03);
 }
 
 TEST_F(RegisterTest, UsesHeightsAloneWhenAsked) {

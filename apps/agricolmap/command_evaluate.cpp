@@ -28,6 +28,7 @@ evaluate::Truth readTruth(const EvaluateArguments& arguments, const Cloud& movin
   evaluate::Truth truth;
   if (!arguments.truth_points.empty()) {
     const Cloud points = io::readCloud(arguments.truth_points, {.colours = false});
+    printWarnings(points.warnings);
     if (points.size() != moving.size()) {
       throw InputError(
           fmt::format("{}: has {} points, {} has {}; the truth needs one per moving "
@@ -61,6 +62,7 @@ ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals)
   }
   const Eigen::Affine3d estimate = io::readMatrix(arguments.transform);
   const Cloud moving = io::readCloud(arguments.moving, {.colours = false});
+  printWarnings(moving.warnings);
   const evaluate::RegistrationErrors errors =
       evaluate::evaluateTransform(estimate, readTruth(arguments, moving), moving);
   if (!arguments.output.empty()) {

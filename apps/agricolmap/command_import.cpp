@@ -26,6 +26,7 @@ ExitCode runImport(const ImportArguments& arguments, const Globals& globals) {
   Progress progress(globals);
   progress.step("import");
   const Cloud cloud = io::importOrthoDsm(arguments.ortho, arguments.dsm, options);
+  printWarnings(cloud.warnings);
   io::writePly(output.path(), cloud);
   output.commit();
   if (!globals.quiet) {

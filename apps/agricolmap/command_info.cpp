@@ -15,12 +15,13 @@ ExitCode runInfo(const std::string& path) {
   const Stopwatch watch;
   const Cloud cloud = io::readCloud(path);
   const double seconds = watch.seconds();
+  printWarnings(cloud.warnings);
   const Box3 box = boundingBox(cloud);
   const Eigen::Vector3d low = cloud.origin + box.min.cast<double>();
   const Eigen::Vector3d high = cloud.origin + box.max.cast<double>();
   const Eigen::Vector3d size = high - low;
   fmt::print("points     {}\n", cloud.size());
-  fmt::print("left out   {} (NaN or infinite coordinates)\n", cloud.dropped_points);
+  fmt::print("left out   {} (NaN, infinite or far from the others)\n", cloud.dropped_points);
   fmt::print("colours    {}\n", cloud.hasColour() ? "yes" : "no");
   fmt::print("x          {:.3f} to {:.3f} m\n", low.x(), high.x());
   fmt::print("y          {:.3f} to {:.3f} m\n", low.y(), high.y());

@@ -1,6 +1,5 @@
 // agricolmap register FIXED MOVING -o DIR
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <iostream>
 #include <memory>
@@ -63,12 +62,6 @@ void printSummary(const pipeline::Registration& result, const std::string& direc
         transform.parts.scale_x, transform.parts.scale_y);
   }
   fmt::print("results in {}\n", directory);
-}
-
-void warnOfDropped(const Cloud& cloud) {
-  if (cloud.dropped_points == 0) return;
-  spdlog::warn("{}: {} points with NaN, infinite or absurd coordinates were left out", cloud.name,
-               cloud.dropped_points);
 }
 
 /// The command line as one line of text, quoted where a shell would need it.
@@ -138,8 +131,8 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   info.seed = static_cast<std::uint64_t>(options.seed);
   info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
   const LoadedPair pair = monitor.run(Stage::kRead, [&] { return load(arguments); });
-  warnOfDropped(pair.fixed);
-  warnOfDropped(pair.moving);
+  printWarnings(pair.fixed.warnings);
+  printWarnings(pair.moving.warnings);
   const pipeline::Registration result =
       pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor);
   info.pictures = writeResults(arguments, options, pair, result, output, monitor);

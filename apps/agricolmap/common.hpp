@@ -56,6 +56,8 @@ class Progress {
 
 /// The flags that are this remedy, as ` (--overwrite)`; empty where there are none.
 std::string flagsFor(Remedy remedy);
+/// To stderr, one line each, unless --quiet.
+void printWarnings(const std::vector<std::string>& warnings);
 
 /// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside
 /// each cloud (one that has none stands in world coordinates); else identity. Says which in

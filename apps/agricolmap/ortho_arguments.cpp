@@ -11,6 +11,7 @@
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/simulate/ortho/row_heading.hpp"
+#include "common.hpp"
 
 namespace agricolmap {
 namespace {
@@ -85,6 +86,7 @@ simulate::SimulatedPair OrthoArguments::simulate(simulate::SimulationOptions& op
   const io::PixelWindow window = windowFor(options);
   window_ = {window.col, window.row, window.cols, window.rows};
   simulate::OrthoField field = simulate::readOrtho({ortho_, dsm_, dtm_}, file_options_, window);
+  printWarnings(field.warnings);
   file_options_.gsd = field.gsd;
   spdlog::info("{}: {:.1f} x {:.1f} m with pixels of {:.5g} m: --window {}", ortho_,
                field.gsd * field.colour.cols(), field.gsd * field.colour.rows(), field.gsd,

@@ -51,8 +51,8 @@ PeerMaps makePeerMaps(const MethodInput& input, StageTimes& times) {
     pipeline::levelMoving(input.fixed, input.moving, guess, paper.level, maps.frames);
   });
   times.run("grid", [&] {
-    const map::Box2 fixed = pipeline::boundsOf(input.fixed, maps.frames.levelled_from_fixed);
-    const map::Box2 moving = pipeline::boundsOf(input.moving, maps.frames.levelled_from_moving);
+    const map::Box2& fixed = maps.frames.fixed_footprint.box;
+    const map::Box2& moving = maps.frames.moving_footprint.box;
     pipeline::requirePlausibleExtents(input.fixed, input.moving, fixed, moving);
     maps.space = pipeline::searchSpace(moving, maps.frames, input.prior);
     const map::Box2 window =

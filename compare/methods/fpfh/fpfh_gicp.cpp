@@ -35,7 +35,7 @@ class FpfhGicp : public Method {
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const PeerMaps maps = makePeerMaps(input, outcome.times);
     const Eigen::Vector2d& middle = maps.space.centre;
-    const map::Box2 moving_box = pipeline::boundsOf(input.moving, maps.frames.levelled_from_moving);
+    const map::Box2& moving_box = maps.frames.moving_footprint.box;
     const PlainPoints fixed =
         pointsIn(input.fixed, maps.frames.levelled_from_fixed,
                  pipeline::reachableWindow(moving_box, maps.space, 1.0), middle);

@@ -24,7 +24,8 @@ struct Cloud {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< file coordinates of the local zero [m]
   std::vector<Eigen::Vector3f> xyz;                  ///< local coordinates [m]
   std::vector<Rgb> rgb;                              ///< sensor colours, 0–255
-  std::size_t dropped_points = 0;                    ///< NaN/Inf points left out on reading
+  std::size_t dropped_points = 0;                    ///< left out on reading: not finite or far off
+  std::vector<std::string> warnings;                 ///< what its reader found odd, file named
 
   std::size_t size() const { return xyz.size(); }
   bool empty() const { return xyz.empty(); }

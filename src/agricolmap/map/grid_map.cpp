@@ -16,7 +16,7 @@ void listOptions(OptionTable& table, GridOptions& options) {
   table.number("cell", options.cell, 0.005, 1.0, "m", "side of a grid cell, s in the paper")
       .basic();
   table
-      .number("sigma", options.sigma, 0.001, 10.0, "m",
+      .number("sigma", options.sigma, 0.0001, 10.0, "m",
               "deviation of the Gaussian weight around a cell's centre, sigma_avg in the paper")
       .basic();
   table
@@ -40,7 +40,14 @@ namespace {
 
 constexpr int kBandRows = 16;
 constexpr std::size_t kChunk = 1U << 16;
-constexpr double kMaxCells = 4e8;
+/// What the rasters of a GridMap take.
+constexpr double kCellBytes = 3 * sizeof(float) + sizeof(Rgb);
+constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+/// Most memory one map may take: 11 ha in cells of 2 cm. The stages after it take more.
+constexpr double kMostMapBytes = 4.0 * kGiB;
+/// Farther from a cell's centre than 11 deviations all points weigh alike: sums of such weights are
+/// still normal floats, and their quotients are numbers.
+constexpr float kLeastExponent = -60.0F;
 
 GridFrame frameFor(const Box2& window, double cell) {
   GridFrame frame;
@@ -48,11 +55,14 @@ GridFrame frameFor(const Box2& window, double cell) {
   const Eigen::Array2d low = (window.min().array() / cell).floor();
   const Eigen::Array2d high = (window.max().array() / cell).ceil().max(low + 1.0);
   const Eigen::Array2d count = high - low;
-  if (!(count.prod() <= kMaxCells)) {
+  const double bytes = kCellBytes * count.prod();
+  if (!(bytes <= kMostMapBytes)) {
     throw InputError(fmt::format(
-        "a map of {:.0f} x {:.0f} m has too many cells of {} m (limit {:.0e}); crop the clouds, "
-        "tighten the prior or enlarge grid.cell",
-        window.sizes().x(), window.sizes().y(), cell, kMaxCells));
+        "a map of {:.0f} x {:.0f} m in cells of {:.3g} m takes {:.3g} GiB of memory (limit {:.3g} "
+        "GiB); crop the clouds, tighten the prior or enlarge grid.cell to {:.2g} m",
+        window.sizes().x(), window.sizes().y(), cell, bytes / kGiB, kMostMapBytes / kGiB,
+        // A little more, as borders are rounded to cells and the number to two digits.
+        1.1 * cell * std::sqrt(bytes / kMostMapBytes)));
   }
   frame.corner = (low * cell).matrix();
   frame.cols = static_cast<int>(count.x());
@@ -143,12 +153,11 @@ Bands sortIntoBands(const Cloud& cloud, const GridFrame& frame, const Locator& l
 
 /// Weighted sums of one cell.
 struct CellSum {
+  float points = 0.0F;  ///< exact up to 16 million
   float weight = 0.0F;
   float height = 0.0F;
   float exg = 0.0F;
   std::array<float, 3> colour{};
-  float nearest_distance = std::numeric_limits<float>::max();
-  std::uint32_t nearest = 0;
 };
 
 void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_row, int cols,
@@ -161,8 +170,9 @@ void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_ro
     const float du = p->u - static_cast<float>(col) - 0.5F;
     const float dv = p->v - static_cast<float>(row) - 0.5F;
     const float distance2 = du * du + dv * dv;
-    const float weight = std::exp(cells2_to_exponent * distance2);
+    const float weight = std::exp(std::max(kLeastExponent, cells2_to_exponent * distance2));
     CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * cols + col];
+    sum.points += 1.0F;
     sum.weight += weight;
     sum.height += weight * p->z;
     if (cloud.hasColour()) {
@@ -172,10 +182,6 @@ void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_ro
       sum.colour[1] += weight * colour.g;
       sum.colour[2] += weight * colour.b;
     }
-    if (distance2 < sum.nearest_distance) {
-      sum.nearest_distance = distance2;
-      sum.nearest = p->index;
-    }
   }
 }
 
@@ -183,16 +189,15 @@ void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMa
   for (int row = first_row; row < first_row + rows; ++row) {
     for (int col = 0; col < map.frame.cols; ++col) {
       const CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * map.frame.cols + col];
-      if (sum.weight <= 0.0F) continue;
+      if (sum.points <= 0.0F) continue;
       const std::size_t i = map.weight.index(row, col);
       const float scale = 1.0F / sum.weight;
-      map.weight[i] = sum.weight;
+      map.weight[i] = sum.points;
       map.height[i] = scale * sum.height;
       map.exg[i] = scale * sum.exg;
       map.colour[i] = {static_cast<std::uint8_t>(scale * sum.colour[0] + 0.5F),
                        static_cast<std::uint8_t>(scale * sum.colour[1] + 0.5F),
                        static_cast<std::uint8_t>(scale * sum.colour[2] + 0.5F)};
-      map.nearest[i] = sum.nearest;
     }
   }
 }
@@ -222,7 +227,6 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
   map.height = Raster<float>(rows, cols);
   map.exg = Raster<float>(rows, cols);
   map.colour = Raster<Rgb>(rows, cols);
-  map.nearest = Raster<std::uint32_t>(rows, cols);
   parallelFor(bands.begin.size() - 1, [&](std::size_t band) {
     const int first_row = static_cast<int>(band) * kBandRows;
     const int band_rows = std::min(kBandRows, rows - first_row);
@@ -234,31 +238,6 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
   map.filled = static_cast<std::size_t>(
       std::count_if(map.weight.begin(), map.weight.end(), [](float w) { return w > 0.0F; }));
   return map;
-}
-
-double pointSpacing(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
-  constexpr double kBin = 0.5;  // [m]; coarse enough to hold some points of any map worth the name
-  constexpr std::size_t kMostSamples = 200'000;
-  constexpr double kMostBins = 1e8;
-  if (cloud.empty()) return 0.0;
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kMostSamples);
-  std::vector<Eigen::Vector2d> places;
-  places.reserve(cloud.size() / step + 1);
-  Box2 box;
-  for (std::size_t i = 0; i < cloud.size(); i += step) {
-    places.push_back((levelled_from_local * cloud.xyz[i].cast<double>()).head<2>() / kBin);
-    box.extend(places.back());
-  }
-  const double cols = std::floor(box.sizes().x()) + 1.0;
-  const double rows = std::floor(box.sizes().y()) + 1.0;
-  if (cols * rows > kMostBins) return 0.0;
-  std::vector<char> seen(static_cast<std::size_t>(cols * rows), 0);
-  for (const Eigen::Vector2d& place : places) {
-    const Eigen::Vector2d at = (place - box.min()).array().floor().matrix();
-    seen[static_cast<std::size_t>(at.y() * cols + at.x())] = 1;
-  }
-  const auto count = static_cast<double>(std::count(seen.begin(), seen.end(), 1));
-  return kBin * std::sqrt(count / static_cast<double>(cloud.size()));
 }
 
 GridOptions coarsened(const GridOptions& options, double spacing) {
@@ -295,7 +274,6 @@ GridMap croppedMap(const GridMap& map, const Box2& window) {
   cut(map.height, part.height);
   cut(map.exg, part.exg);
   cut(map.colour, part.colour);
-  cut(map.nearest, part.nearest);
   part.points = map.points;
   part.filled = static_cast<std::size_t>(
       std::count_if(part.weight.begin(), part.weight.end(), [](float w) { return w > 0.0F; }));

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <limits>
 
 #include "agricolmap/core/cloud.hpp"
@@ -34,13 +33,12 @@ float excessGreen(Rgb colour, ExgKind kind);
 /// mean nothing. Coordinates are those of the levelled frame.
 struct GridMap {
   GridFrame frame;
-  Raster<float> weight;           ///< sum of the points' Gaussian weights, 0 = empty
-  Raster<float> height;           ///< mean height above the levelled ground plane [m]
-  Raster<float> exg;              ///< mean Excess Green
-  Raster<Rgb> colour;             ///< mean colour
-  Raster<std::uint32_t> nearest;  ///< index in the cloud of the point nearest to the cell's centre
-  std::size_t points = 0;         ///< points that fell into the map
-  std::size_t filled = 0;         ///< cells that are not empty
+  Raster<float> weight;    ///< points that the cell's values rest on, 0 = empty
+  Raster<float> height;    ///< mean height above the levelled ground plane [m]
+  Raster<float> exg;       ///< mean Excess Green
+  Raster<Rgb> colour;      ///< mean colour
+  std::size_t points = 0;  ///< points that fell into the map
+  std::size_t filled = 0;  ///< cells that are not empty
   /// Robust deviation of the ground from height 0 where the cloud shows it [m]; infinite: unknown.
   double ground_deviation = std::numeric_limits<double>::infinity();
 
@@ -50,10 +48,6 @@ struct GridMap {
 
 /// Horizontal window of the levelled frame [m].
 using Box2 = Eigen::AlignedBox2d;
-
-/// Mean distance between neighbouring points, seen from above [m]: the root of the area that holds
-/// points over their number.
-double pointSpacing(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
 
 /// The options for clouds with points this far apart [m]: as they are, or, if they may be, coarser.
 GridOptions coarsened(const GridOptions& options, double spacing);

@@ -52,7 +52,28 @@ TEST(GridMap, WeighsPointsByTheirDistanceToTheCellCentre) {
   const double far = std::exp(-0.5 * 0.009 * 0.009 / 1e-4);
   EXPECT_NEAR(map.height(0, 0), (near * 1 + far * 3) / (near + far), 1e-4);
   EXPECT_NEAR(map.exg(0, 0), (near * 2 - far) / (near + far), 1e-4);
-  EXPECT_EQ(map.nearest(0, 0), 0U);
+  EXPECT_EQ(map.weight(0, 0), 2.0F);
+}
+
+// With a narrow Gaussian the weights of points far from the centre are no floats any more.
+TEST(GridMap, HoldsNumbersForAnyOptionsWithinTheirLimits) {
+  const Cloud cloud = randomCloud(20000);
+  for (const auto& [cell, sigma] : {std::pair{0.02, 0.0001}, {0.02, 0.001}, {1.0, 0.04}}) {
+    const GridMap map = makeGridMap(cloud, Eigen::Affine3d::Identity(), box(0, 0, 3, 2),
+                                    {.cell = cell, .sigma = sigma});
+    std::size_t filled = 0;
+    for (std::size_t i = 0; i < map.height.size(); ++i) {
+      if (!map.valid(i)) continue;
+      ++filled;
+      // Heights are from 0 to 0.1 m.
+      ASSERT_TRUE(map.height[i] >= -1e-6F && map.height[i] <= 0.1001F)
+          << map.height[i] << " for sigma " << sigma;
+      ASSERT_TRUE(std::abs(map.exg[i]) <= 2.0F) << map.exg[i] << " for sigma " << sigma;
+    }
+    EXPECT_EQ(filled, map.filled);
+    // 1.3 points a small cell, and every cell that holds one has a height.
+    EXPECT_GT(filled, cell < 0.1 ? 10000U : 5U);
+  }
 }
 
 TEST(GridMap, CountsWhatFallsInside) {
@@ -61,8 +82,20 @@ TEST(GridMap, CountsWhatFallsInside) {
   EXPECT_NEAR(static_cast<double>(map.points), 20000.0 / 3.0, 300);
   EXPECT_THROW(makeGridMap(cloud, Eigen::Affine3d::Identity(), box(10, 10, 11, 11), {}),
                InputError);
-  EXPECT_THROW(makeGridMap(cloud, Eigen::Affine3d::Identity(), box(0, 0, 1e6, 1e6), {}),
-               InputError);
+}
+
+TEST(GridMap, RefusesMapsThatTakeTooMuchMemoryAndNamesTheRemedy) {
+  const Cloud cloud = randomCloud(10);
+  for (const double side : {380.0, 1e6, 1e30}) {
+    try {
+      makeGridMap(cloud, Eigen::Affine3d::Identity(), box(0, 0, side, side), {});
+      FAIL() << side;
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      EXPECT_NE(what.find("limit 4 GiB"), std::string::npos) << what;
+      EXPECT_NE(what.find("grid.cell"), std::string::npos) << what;
+    }
+  }
 }
 
 TEST(GridMap, IsTheSameOnOneThread) {
@@ -73,7 +106,7 @@ TEST(GridMap, IsTheSameOnOneThread) {
   const GridMap one = makeGridMap(cloud, Eigen::Affine3d::Identity(), window, {});
   EXPECT_TRUE(std::equal(many.height.begin(), many.height.end(), one.height.begin()));
   EXPECT_TRUE(std::equal(many.exg.begin(), many.exg.end(), one.exg.begin()));
-  EXPECT_TRUE(std::equal(many.nearest.begin(), many.nearest.end(), one.nearest.begin()));
+  EXPECT_TRUE(std::equal(many.colour.begin(), many.colour.end(), one.colour.begin()));
 }
 
 TEST(GridMap, CroppedIsTheSameInItsWindow) {
@@ -88,27 +121,18 @@ TEST(GridMap, CroppedIsTheSameInItsWindow) {
       const int row = static_cast<int>(std::lround(there.y()));
       const int col = static_cast<int>(std::lround(there.x()));
       ASSERT_EQ(part.height(r, c), map.height(row, col));
-      ASSERT_EQ(part.nearest(r, c), map.nearest(row, col));
+      ASSERT_EQ(part.colour(r, c), map.colour(row, col));
     }
   }
   EXPECT_EQ(croppedMap(map, box(10, 10, 11, 11)).weight.size(), 0U);
 }
 
 TEST(GridMap, CellsFollowTheSpacingOfThePoints) {
-  Cloud cloud;
-  for (int i = 0; i < 200; ++i) {
-    for (int j = 0; j < 200; ++j) {
-      cloud.xyz.emplace_back(0.05F * static_cast<float>(i), 0.05F * static_cast<float>(j), 0.0F);
-    }
-  }
-  const double spacing = pointSpacing(cloud, Eigen::Affine3d::Identity());
-  EXPECT_NEAR(spacing, 0.05, 0.003);
-  const GridOptions coarse = coarsened({}, spacing);
-  EXPECT_NEAR(coarse.cell, 0.035, 0.003);
+  const GridOptions coarse = coarsened({}, 0.05);
+  EXPECT_NEAR(coarse.cell, 0.035, 1e-12);
   EXPECT_NEAR(coarse.sigma, 2.0 * coarse.cell, 1e-12);
   EXPECT_EQ(coarsened({}, 0.01).cell, GridOptions{}.cell);
-  EXPECT_EQ(coarsened({.coarsen = false}, spacing).cell, GridOptions{}.cell);
-  EXPECT_EQ(pointSpacing({}, Eigen::Affine3d::Identity()), 0.0);
+  EXPECT_EQ(coarsened({.coarsen = false}, 0.05).cell, GridOptions{}.cell);
 }
 
 }  // namespace

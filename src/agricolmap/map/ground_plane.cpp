@@ -121,12 +121,17 @@ SupportedPlane findPlaneUnder(const LevelPoints& points, const Eigen::Vector3d& 
     found.support = supportOf(found.plane, points, centre);
     if (found.support > best.support) best = found;
   }
-  std::vector<double> near;
+  std::vector<double> near, below;
   for (const Eigen::Vector3d& point : points) {
-    const double over = std::abs(best.plane.over(point, centre));
-    if (over < kRelief) near.push_back(over);
+    const double over = best.plane.over(point, centre);
+    if (std::abs(over) < kRelief) near.push_back(std::abs(over));
+    if (over < 0.0) below.push_back(-over);
   }
+  best.share = static_cast<double>(near.size()) / static_cast<double>(points.size());
   best.plane.deviation = near.empty() ? kRelief : deviationFrom(near);
+  if (!below.empty()) {
+    best.plane.deviation = std::max(best.plane.deviation, deviationFrom(below));
+  }
   return best;
 }
 

@@ -33,10 +33,12 @@ GroundPlane fitPlane(const LevelPoints& points, const Eigen::Vector3d& centre, d
 
 /// The plane with many points close to it and few below it, which is what ground looks like where
 /// a canopy hides it in most cells. `support` says how many: the points within centimetres of it
-/// less those that lie clearly below. The plane's deviation is that of the points close to it.
+/// less those that lie clearly below. The plane's deviation is that of the points close to it, or
+/// that of all below it where that is larger: no canopy is there, so they are relief.
 struct SupportedPlane {
   GroundPlane plane;
   double support = 0.0;
+  double share = 0.0;  ///< of the points that are close to it
 };
 SupportedPlane findPlaneUnder(const LevelPoints& points, const Eigen::Vector3d& centre,
                               double cell);

@@ -24,7 +24,7 @@ void listOptions(OptionTable& table, HiddenGroundOptions& options) {
 
 namespace {
 
-constexpr float kLeastPoints = 4.0F;  // a cell, on average
+constexpr float kLeastPoints = 4.0F;  // in a cell, on average: fewer say nothing by their number
 constexpr float kLeastBare = 0.05F;   // share of the cells around
 // Cells farther from points than these are not behind a plant but beyond the strip.
 constexpr int kReach = 2;              // cells

@@ -19,8 +19,10 @@ void listOptions(OptionTable& table, HiddenGroundOptions& options);
 
 /// A copy of `map` in which the part of each cell that has no points, for its share of the usual
 /// number of points around, has Excess Green and height of the bare ground around. Cells far from
-/// all points stay empty, as do those with no bare ground around; a map with fewer than 4 points
-/// a cell stays as it is, as their number says nothing then. Colours stay, too.
+/// all points stay empty, as do those with no bare ground around. Where filled cells hold fewer
+/// than 4 points on average the map stays as it is, as their number says nothing then: a cloud that
+/// was thinned to a point per voxel of a cell's size does not tell what was seen. Colours stay,
+/// too.
 GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options);
 
 }  // namespace agricolmap::map

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "agricolmap/core/random.hpp"
+
 namespace agricolmap::map {
 namespace {
 
@@ -19,7 +21,6 @@ GridMap mapWithShadow() {
   map.exg = Raster<float>(40, 40, kSoil);
   map.height = Raster<float>(40, 40, 0.01F);
   map.colour = Raster<Rgb>(40, 40);
-  map.nearest = Raster<std::uint32_t>(40, 40);
   for (int r = 0; r < 40; ++r) {
     for (int c = 20; c < 27; ++c) {
       map.exg(r, c) = kPlant;
@@ -45,6 +46,27 @@ TEST(HiddenGround, IsSoilForTheShareThatWasNotSeen) {
   EXPECT_NEAR(filled.exg(20, 27), kSoil, 1e-6);
   EXPECT_NEAR(filled.height(20, 27), 0.01, 1e-6);
   EXPECT_EQ(filled.filled, map.filled + 40);
+}
+
+// What counts are the points, not the weights that their means are made with.
+TEST(HiddenGround, IsFoundWhateverTheWidthOfTheGaussian) {
+  Random random(5);
+  Cloud cloud;
+  cloud.name = "strip";
+  for (int i = 0; i < 40 * 40 * 12; ++i) {
+    const double x = random.uniform(0, 0.8), y = random.uniform(0, 0.8);
+    if (x > 0.54 && x < 0.56) continue;
+    cloud.xyz.push_back(Eigen::Vector3d(x, y, x > 0.4 && x < 0.54 ? 0.1 : 0.0).cast<float>());
+  }
+  for (const double sigma : {0.04, 0.004, 0.0004}) {
+    const GridMap map =
+        makeGridMap(cloud, Eigen::Affine3d::Identity(),
+                    {Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(0.8)}, {.sigma = sigma});
+    ASSERT_FALSE(map.valid(20, 27));
+    const GridMap filled = withHiddenGround(map, {});
+    EXPECT_TRUE(filled.valid(20, 27)) << "sigma " << sigma;
+    EXPECT_NEAR(filled.height(20, 27), 0.0, 1e-3) << "sigma " << sigma;
+  }
 }
 
 TEST(HiddenGround, IsFoundByHeightWithoutColours) {

@@ -13,6 +13,7 @@
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/random.hpp"
 #include "agricolmap/map/ground_plane.hpp"
 
 namespace agricolmap::map {
@@ -50,13 +51,16 @@ constexpr double kLowerPercentiles[] = {1.0, 0.3, 0.1, 0.03, 0.0};  ///< of the 
 constexpr double kLeastSupport = 0.15;
 constexpr double kSameHeight = 0.05;
 
-/// Evenly spread points of the cloud in the guess frame.
+/// Points spread over the cloud, in the guess frame: one of every `stride`, but not always the
+/// same one, which in a cloud in raster order may be that of the same columns in every row.
 LevelPoints samplePoints(const Cloud& cloud, const Eigen::Affine3d& guess_from_local) {
   const std::size_t stride = std::max<std::size_t>(1, cloud.size() / kMaxSamples);
+  Random random(1);
   LevelPoints points;
   points.reserve(cloud.size() / stride + 1);
   for (std::size_t i = 0; i < cloud.size(); i += stride) {
-    points.push_back(guess_from_local * cloud.xyz[i].cast<double>());
+    const std::size_t one = i + random.below(std::min(stride, cloud.size() - i));
+    points.push_back(guess_from_local * cloud.xyz[one].cast<double>());
   }
   return points;
 }
@@ -149,7 +153,8 @@ UnderCanopy levelBySupport(Eigen::Affine3d levelled, const LevelPoints& points,
     const SupportedPlane under = findPlaneUnder(low, centre, cell);
     makeLevel(under.plane, centre, levelled);
     result.share = under.support / static_cast<double>(low.size());
-    result.levelling = {levelled, tiltOf(levelled), under.plane.deviation, low.size(), true};
+    result.levelling = {levelled, tiltOf(levelled), under.plane.deviation, low.size(),
+                        true,     under.share};
     if (under.plane.slope_and_height.head<2>().norm() < kSettled) break;
   }
   result.height = (levelled * centre).z() - centre.z();

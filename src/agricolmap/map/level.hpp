@@ -23,9 +23,10 @@ struct Levelling {
   double tilt = 0.0;       ///< angle between the ground's normal and z before levelling [rad]
   double roughness = 0.0;  ///< robust deviation of the ground cells from the plane [m]
   std::size_t cells = 0;   ///< cells with points enough
-  /// A canopy hides the ground from many cells; the plane and its roughness are those of the
-  /// others.
+  /// A canopy hides the ground from many cells, or there is relief; the plane is the lowest that
+  /// enough of the cells support, and `roughness` of those close to it and of those below.
   bool under_canopy = false;
+  double support = 1.0;  ///< share of the cells that are within centimetres of such a plane
 };
 
 /// Fits the ground plane of `cloud` in the frame `guess_from_local` and levels it.

@@ -89,9 +89,49 @@ TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
   }
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_TRUE(level.under_canopy);
+  EXPECT_LT(level.support, 1.0);
   EXPECT_LT(level.tilt, 0.01);
   EXPECT_LT(level.roughness, 0.03);
   EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(5.0, 1.1, 0.0)).z(), 0.0, 0.03);
+}
+
+// A cloud from rasters: every fifth column is a row of plants, and one point in five is looked at.
+TEST(Level, LooksAtAllColumnsOfACloudInRasterOrder) {
+  Random random(11);
+  Cloud cloud;
+  cloud.name = "raster";
+  constexpr int kSide = 1000;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      const double height = random.normal(0.01) + (col % 5 == 0 ? 0.3 : 0.0);
+      cloud.xyz.push_back(Eigen::Vector3d(0.02 * col, 0.02 * row, height).cast<float>());
+    }
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(10, 10, 0)).z(), 0.0, 0.03);
+}
+
+// Rough ground, nothing grows on it: the deviation is not that of the cells close to the plane
+// only.
+TEST(Level, SaysHowRoughTheGroundIs) {
+  Random random(12);
+  Cloud cloud;
+  cloud.name = "ploughed";
+  for (int row = 0; row < 60; ++row) {
+    for (int col = 0; col < 60; ++col) {
+      const double ground = random.normal(0.1);
+      for (int i = 0; i < 40; ++i) {
+        cloud.xyz.push_back(Eigen::Vector3d(0.5 * (col + random.uniform()),
+                                            0.5 * (row + random.uniform()),
+                                            ground + random.normal(0.005))
+                                .cast<float>());
+      }
+    }
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_GT(level.roughness, 0.07);
+  EXPECT_LT(level.roughness, 0.14);
+  EXPECT_LT(level.support, level.under_canopy ? 0.7 : 1.1);
 }
 
 TEST(Level, RefusesCloudsThatAreNoMap) {

@@ -95,7 +95,6 @@ inline map::GridMap viewOf(const Truth& truth, const TestField& field, const map
   map.height = map.weight;
   map.exg = map.weight;
   map.colour = Raster<Rgb>(map.frame.rows, map.frame.cols);
-  map.nearest = Raster<std::uint32_t>(map.frame.rows, map.frame.cols);
   Random random(seed);
   for (int row = 0; row < map.frame.rows; ++row) {
     for (int col = 0; col < map.frame.cols; ++col) {

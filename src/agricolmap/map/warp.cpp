@@ -50,7 +50,6 @@ void sampleCell(const GridMap& map, const Eigen::Vector2d& place, GridMap& out, 
     if (share > heaviest) {
       heaviest = share;
       out.colour[to] = map.colour[i];
-      out.nearest[to] = map.nearest[i];
     }
   }
   if (known < 0.5F) return;
@@ -71,7 +70,6 @@ GridMap warped(const GridMap& map, const Eigen::Affine2d& warped_from_map) {
   out.height = Raster<float>(rows, cols);
   out.exg = Raster<float>(rows, cols);
   out.colour = Raster<Rgb>(rows, cols);
-  out.nearest = Raster<std::uint32_t>(rows, cols);
   const Eigen::Affine2d map_from_warped = warped_from_map.inverse();
   parallelFor(
       static_cast<std::size_t>(rows),

@@ -8,16 +8,15 @@ namespace {
 void levelAndBound(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                    const RegistrationOptions& options, PairMaps& maps) {
   levelMoving(fixed, moving, guess, options.level, maps.frames);
-  maps.moving_box = boundsOf(moving, maps.frames.levelled_from_moving);
+  maps.moving_box = maps.frames.moving_footprint.box;
   maps.space = searchSpace(maps.moving_box, maps.frames, options.prior);
 }
 
 /// Cells that both clouds fill.
-map::GridOptions cellsFor(const Cloud& fixed, const Cloud& moving, const PairFrames& frames,
-                          const RegistrationOptions& options) {
-  double spacing = map::pointSpacing(fixed, frames.levelled_from_fixed);
+map::GridOptions cellsFor(const PairFrames& frames, const RegistrationOptions& options) {
+  double spacing = frames.fixed_footprint.spacing();
   if (!options.prior.scale_unknown) {
-    spacing = std::max(spacing, map::pointSpacing(moving, frames.levelled_from_moving));
+    spacing = std::max(spacing, frames.moving_footprint.spacing());
   }
   return map::coarsened(options.grid, spacing);
 }
@@ -46,14 +45,14 @@ PairMaps mapPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d&
   PairMaps maps;
   monitor.run(Stage::kLevel, [&] {
     levelFixed(fixed, options.level, maps.frames);
-    maps.fixed_box = boundsOf(fixed, maps.frames.levelled_from_fixed);
+    maps.fixed_box = maps.frames.fixed_footprint.box;
     levelAndBound(fixed, moving, centredGuess(fixed, moving, guess, options.prior), options, maps);
   });
   if (!options.prior.scale_unknown) {
     requirePlausibleExtents(fixed, moving, maps.fixed_box, maps.moving_box);
   }
   monitor.run(Stage::kGrid, [&] {
-    maps.grid = cellsFor(fixed, moving, maps.frames, options);
+    maps.grid = cellsFor(maps.frames, options);
     gridFixed(fixed, options, maps);
     if (!options.prior.scale_unknown) gridMoving(moving, maps);
   });

@@ -23,14 +23,6 @@ struct PointSum {
   }
 };
 
-struct Box2Sum {
-  map::Box2 box;
-  Box2Sum& operator+=(const Box2Sum& other) {
-    box.extend(other.box);
-    return *this;
-  }
-};
-
 }  // namespace
 
 Eigen::Vector3d meanOf(const Cloud& cloud) {
@@ -53,6 +45,7 @@ Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eige
 void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames) {
   frames.fixed = map::levelCloud(fixed, Eigen::Affine3d::Identity(), options);
   frames.levelled_from_fixed = frames.fixed.levelled_from_guess;
+  frames.fixed_footprint = map::footprintOf(fixed, frames.levelled_from_fixed);
 }
 
 void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
@@ -62,20 +55,7 @@ void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d&
       Eigen::Translation3d(-fixed.origin) * guess * Eigen::Translation3d(moving.origin);
   frames.moving = map::levelCloud(moving, guess_local, options);
   frames.levelled_from_moving = frames.moving.levelled_from_guess * guess_local;
-}
-
-map::Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
-  return parallelSum<Box2Sum>(
-             cloud.size(), 1U << 16, {},
-             [&](std::size_t begin, std::size_t end) {
-               Box2Sum part;
-               for (std::size_t i = begin; i < end; ++i) {
-                 part.box.extend(
-                     (levelled_from_local * cloud.xyz[i].cast<double>()).head<2>().eval());
-               }
-               return part;
-             })
-      .box;
+  frames.moving_footprint = map::footprintOf(moving, frames.levelled_from_moving);
 }
 
 void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map::Box2& fixed_box,
@@ -102,11 +82,19 @@ map::Box2 reachableWindow(const map::Box2& moving, const SearchSpace& space, dou
   const double heading = space.uncertainty.heading_deg * std::numbers::pi / 180.0;
   const double stretch = std::exp(logScaleLimit(space.uncertainty));
   map::Box2 window;
-  for (const double yaw : {-heading, 0.0, heading}) {
-    for (int corner = 0; corner < 4; ++corner) {
-      const Eigen::Vector2d arm =
-          moving.corner(static_cast<map::Box2::CornerType>(corner)) - space.centre;
-      window.extend((space.centre + stretch * (rotation2(yaw) * arm)).eval());
+  for (int corner = 0; corner < 4; ++corner) {
+    const Eigen::Vector2d arm =
+        stretch * (moving.corner(static_cast<map::Box2::CornerType>(corner)) - space.centre);
+    for (const double yaw : {-heading, 0.0, heading}) {
+      window.extend((space.centre + rotation2(yaw) * arm).eval());
+    }
+    // Between these headings an arm reaches farthest where it comes to lie along an axis.
+    const double direction = std::atan2(arm.y(), arm.x());
+    for (int axis = 0; axis < 4; ++axis) {
+      const double along = 0.5 * std::numbers::pi * axis;
+      if (std::abs(std::remainder(along - direction, 2.0 * std::numbers::pi)) > heading) continue;
+      window.extend(
+          (space.centre + arm.norm() * Eigen::Vector2d(std::cos(along), std::sin(along))).eval());
     }
   }
   const double margin = space.uncertainty.translation + rim;

@@ -5,6 +5,7 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/search_space.hpp"
+#include "agricolmap/map/footprint.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/map/level.hpp"
 
@@ -16,6 +17,8 @@ struct PairFrames {
   Eigen::Affine3d levelled_from_moving;  ///< moving local → initial guess → moving levelled [m]
   map::Levelling fixed;
   map::Levelling moving;
+  map::Footprint fixed_footprint;  ///< in the levelled frames
+  map::Footprint moving_footprint;
 };
 
 /// Mean of the cloud's points in its file's coordinates [m].
@@ -26,14 +29,12 @@ Eigen::Vector3d meanOf(const Cloud& cloud);
 Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                              const PriorUncertainty& uncertainty);
 
-/// Levels the fixed cloud.
+/// Levels the fixed cloud and finds where its points are.
 void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames);
-/// Levels the moving cloud under a guess (moving file → fixed file coordinates).
+/// Levels the moving cloud under a guess (moving file → fixed file coordinates) and finds where its
+/// points are.
 void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const map::LevelOptions& options, PairFrames& frames);
-
-/// Horizontal bounds of the cloud in the levelled frame.
-map::Box2 boundsOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
 
 /// Throws InputError when the moving map's bounds are far larger than the fixed map's.
 void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map::Box2& fixed_box,

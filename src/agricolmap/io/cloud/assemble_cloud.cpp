@@ -1,11 +1,12 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -16,19 +17,34 @@ namespace {
 
 /// Nothing on Earth has larger projected coordinates; beyond are uninitialised values.
 constexpr double kMaxCoordinate = 1e8;
+/// No field is so large: what lies farther from the origin is a placeholder or a mismatch [m].
+constexpr double kMaxFromOrigin = 2e4;
+/// A first point that is nearer than this to the middle is one of the cloud's [m].
+constexpr double kOfTheCloud = 1e3;
+/// Points that the middle is taken from, about, and the most chunks that they are looked for in.
+constexpr std::size_t kSamples = 1024;
+constexpr std::size_t kSampledChunks = 64;
+constexpr std::size_t kEnoughSamples = 100;
 /// From here on 32-bit floats are coarser than 0.8 cm.
 constexpr double kFarForFloat = 1e5;
-/// From here on local floats are coarser than 1 mm.
-constexpr float kFarForLocal = 16384.0F;
 
 bool isWide(ColourKind kind) {
   return kind == ColourKind::kWideInteger || kind == ColourKind::kWideFloat;
 }
 
-bool usable(const PointBlock& block, std::size_t i) {
-  // Written so that NaN fails.
-  return std::abs(block.xyz[0][i]) <= kMaxCoordinate &&
-         std::abs(block.xyz[1][i]) <= kMaxCoordinate && std::abs(block.xyz[2][i]) <= kMaxCoordinate;
+Eigen::Vector3d pointOf(const PointBlock& block, std::size_t i) {
+  return {block.xyz[0][i], block.xyz[1][i], block.xyz[2][i]};
+}
+
+/// Written so that NaN fails.
+bool within(const Eigen::Vector3d& point, double limit) {
+  return std::abs(point.x()) <= limit && std::abs(point.y()) <= limit &&
+         std::abs(point.z()) <= limit;
+}
+
+/// That says where the cloud is: exporters write (0, 0, 0) for points that they do not have.
+bool tellsPlace(const Eigen::Vector3d& point) {
+  return within(point, kMaxCoordinate) && !point.isZero(0.0);
 }
 
 bool usableColour(const PointBlock& block, std::size_t i) {
@@ -36,37 +52,61 @@ bool usableColour(const PointBlock& block, std::size_t i) {
          std::isfinite(block.wide[2][i]);
 }
 
-Eigen::Vector3d chooseOrigin(const PointSource& source, const std::string& name) {
-  bool found = false;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  for (std::size_t chunk = 0; chunk < source.chunks() && !found; ++chunk) {
-    throwIfInterrupted();
-    source.decode(chunk, [&](const PointBlock& block) {
-      for (std::size_t i = 0; i < block.count && !found; ++i) {
-        if (!usable(block, i)) continue;
-        origin = {std::round(block.xyz[0][i]), std::round(block.xyz[1][i]),
-                  std::round(block.xyz[2][i])};
-        found = true;
+/// Of every `step`-th chunk, of the points that tell a place every n-th, the first among them, so
+/// that there are about kSamples; in file order.
+std::vector<Eigen::Vector3d> samplePoints(const PointSource& source, std::size_t step) {
+  const std::size_t stride = std::max<std::size_t>(1, source.points() / step / kSamples);
+  std::vector<std::vector<Eigen::Vector3d>> parts((source.chunks() + step - 1) / step);
+  parallelFor(parts.size(), [&](std::size_t part) {
+    std::size_t seen = 0;
+    source.decode(part * step, [&](const PointBlock& block) {
+      for (std::size_t i = 0; i < block.count; ++i) {
+        const Eigen::Vector3d point = pointOf(block, i);
+        if (tellsPlace(point) && seen++ % stride == 0) parts[part].push_back(point);
       }
     });
-  }
-  if (!found) {
-    throw InputError(
-        fmt::format("{}: none of its {} points has finite coordinates", name, source.points()));
-  }
-  return origin;
+  });
+  std::vector<Eigen::Vector3d> samples;
+  for (const auto& part : parts) samples.insert(samples.end(), part.begin(), part.end());
+  return samples;
 }
 
-void warnIfCoarse(const PointSource& source, const Eigen::Vector3d& origin,
-                  const std::string& name) {
-  const double far = origin.cwiseAbs().maxCoeff();
+/// Median of each coordinate.
+Eigen::Vector3d medianOf(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d median;
+  std::vector<double> values(points.size());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(points.begin(), points.end(), values.begin(),
+                   [&](const Eigen::Vector3d& point) { return point[axis]; });
+    std::nth_element(values.begin(), middle, values.end());
+    median[axis] = *middle;
+  }
+  return median;
+}
+
+/// The first point, if it is where the others are, else their middle. Zero when all points are
+/// there, or none can be used.
+Eigen::Vector3d chooseOrigin(const PointSource& source) {
+  const std::size_t step = std::max<std::size_t>(1, source.chunks() / kSampledChunks);
+  std::vector<Eigen::Vector3d> samples = samplePoints(source, step);
+  // Most of the points cannot be used: none is spared a look.
+  if (samples.size() < kEnoughSamples && step > 1) samples = samplePoints(source, 1);
+  if (samples.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d median = medianOf(samples);
+  const bool of_the_cloud = within(samples.front() - median, kOfTheCloud);
+  return (of_the_cloud ? samples.front() : median).array().round().matrix();
+}
+
+void warnIfCoarse(const PointSource& source, Cloud& cloud) {
+  const double far = cloud.origin.cwiseAbs().maxCoeff();
   if (!source.floatCoordinates() || far <= kFarForFloat) return;
   const auto value = static_cast<float>(far);
   const float step = std::nextafter(value, std::numeric_limits<float>::infinity()) - value;
-  spdlog::warn(
+  cloud.warnings.push_back(fmt::format(
       "{}: coordinates around {:.0f} m are stored as 32-bit floats, in steps of {:.1f} cm; write "
       "them as double or subtract an offset (offset.xyz) before writing",
-      name, far, 100.0F * step);
+      cloud.name, far, 100.0F * step));
 }
 
 struct ColourRange {
@@ -74,13 +114,15 @@ struct ColourRange {
   float high = 0.0F;
 };
 
-ColourRange colourRange(const PointSource& source) {
+ColourRange colourRange(const PointSource& source, const Eigen::Vector3d& origin) {
   std::vector<ColourRange> parts(source.chunks());
   parallelFor(source.chunks(), [&](std::size_t chunk) {
     ColourRange& range = parts[chunk];
     source.decode(chunk, [&](const PointBlock& block) {
       for (std::size_t i = 0; i < block.count; ++i) {
-        if (!usable(block, i) || !usableColour(block, i)) continue;
+        if (!within(pointOf(block, i) - origin, kMaxFromOrigin) || !usableColour(block, i)) {
+          continue;
+        }
         for (const auto& channel : block.wide) {
           range.low = std::min(range.low, channel[i]);
           range.high = std::max(range.high, channel[i]);
@@ -97,8 +139,8 @@ ColourRange colourRange(const PointSource& source) {
 }
 
 /// What wide colours are multiplied by to be 0–255.
-float colourScale(const PointSource& source, const std::string& name) {
-  const ColourRange range = colourRange(source);
+float colourScale(const PointSource& source, const Cloud& cloud) {
+  const ColourRange range = colourRange(source, cloud.origin);
   if (range.low >= 0.0F) {
     if (source.colourKind() == ColourKind::kWideFloat && range.high <= 1.0F) return 255.0F;
     if (range.high <= 255.0F) return 1.0F;
@@ -106,7 +148,7 @@ float colourScale(const PointSource& source, const std::string& name) {
   }
   throw InputError(
       fmt::format("{}: its colours go from {} to {}; known are 0..1 (float), 0..255 and 0..65535",
-                  name, range.low, range.high));
+                  cloud.name, range.low, range.high));
 }
 
 Rgb narrow(const PointBlock& block, std::size_t i, float scale) {
@@ -148,50 +190,82 @@ void compact(const PointSource& source, const std::vector<std::size_t>& kept, Cl
   if (cloud.hasColour()) cloud.rgb.resize(next);
 }
 
+/// Points of one chunk, or of all.
+struct Tally {
+  std::size_t kept = 0;
+  std::size_t far = 0;  ///< that tell a place, but one too far from the origin
+};
+
+/// Decodes a chunk to where its points belong when none before them is dropped.
+Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_scale, Cloud& cloud) {
+  const ColourKind kind = source.colourKind();
+  const std::size_t first = source.firstPoint(chunk);
+  Tally tally;
+  source.decode(chunk, [&](const PointBlock& block) {
+    for (std::size_t i = 0; i < block.count; ++i) {
+      const Eigen::Vector3d point = pointOf(block, i);
+      const Eigen::Vector3d local = point - cloud.origin;
+      if (!within(local, kMaxFromOrigin)) {
+        tally.far += tellsPlace(point) ? 1 : 0;
+        continue;
+      }
+      if (isWide(kind) && !usableColour(block, i)) continue;
+      const std::size_t next = first + tally.kept++;
+      cloud.xyz[next] = local.cast<float>();
+      if (kind == ColourKind::kByte) {
+        cloud.rgb[next] = block.rgb[i];
+      } else if (kind != ColourKind::kNone) {
+        cloud.rgb[next] = narrow(block, i, colour_scale);
+      }
+    }
+  });
+  return tally;
+}
+
+void checkDropped(const PointSource& source, std::size_t far, Cloud& cloud) {
+  if (far > cloud.size()) {
+    throw InputError(fmt::format(
+        "{}: {} of its {} points lie more than {:.0f} km from its middle, too far for a field; "
+        "check the units (coordinates must be metres)",
+        cloud.name, far, source.points(), kMaxFromOrigin / 1000.0));
+  }
+  if (cloud.empty()) {
+    throw InputError(
+        fmt::format("{}: none of its {} points is finite", cloud.name, source.points()));
+  }
+  if (cloud.dropped_points == 0) return;
+  cloud.warnings.push_back(fmt::format(
+      "{}: {} points were left out: NaN, infinite or more than {:.0f} km from the others",
+      cloud.name, cloud.dropped_points, kMaxFromOrigin / 1000.0));
+}
+
 }  // namespace
 
 Cloud assembleCloud(const PointSource& source, const std::string& name) {
   Cloud cloud;
   cloud.name = name;
-  cloud.origin = chooseOrigin(source, name);
-  warnIfCoarse(source, cloud.origin, name);
+  cloud.origin = chooseOrigin(source);
+  warnIfCoarse(source, cloud);
   const ColourKind kind = source.colourKind();
-  const float scale = isWide(kind) ? colourScale(source, name) : 1.0F;
+  const float scale = isWide(kind) ? colourScale(source, cloud) : 1.0F;
   resizeInHugePages(cloud.xyz, source.points());
   if (kind != ColourKind::kNone) resizeInHugePages(cloud.rgb, source.points());
   std::vector<std::size_t> kept(source.chunks(), 0);
-  std::vector<float> farthest(source.chunks(), 0.0F);
+  std::vector<std::size_t> far(source.chunks(), 0);
   parallelFor(source.chunks(), [&](std::size_t chunk) {
-    std::size_t next = source.firstPoint(chunk);
-    float far = 0.0F;
-    source.decode(chunk, [&](const PointBlock& block) {
-      for (std::size_t i = 0; i < block.count; ++i) {
-        if (!usable(block, i) || (isWide(kind) && !usableColour(block, i))) continue;
-        const Eigen::Vector3d point(block.xyz[0][i], block.xyz[1][i], block.xyz[2][i]);
-        const Eigen::Vector3f local = (point - cloud.origin).cast<float>();
-        far = std::max(far, local.cwiseAbs().maxCoeff());
-        cloud.xyz[next] = local;
-        if (kind == ColourKind::kByte) {
-          cloud.rgb[next] = block.rgb[i];
-        } else if (kind != ColourKind::kNone) {
-          cloud.rgb[next] = narrow(block, i, scale);
-        }
-        ++next;
-      }
-    });
-    kept[chunk] = next - source.firstPoint(chunk);
-    farthest[chunk] = far;
+    const Tally tally = decodeChunk(source, chunk, scale, cloud);
+    kept[chunk] = tally.kept;
+    far[chunk] = tally.far;
   });
   compact(source, kept, cloud);
-  if (cloud.empty()) throw InputError(fmt::format("{}: no usable point is left", name));
-  const float far = *std::max_element(farthest.begin(), farthest.end());
-  if (far > kFarForLocal) {
-    spdlog::warn(
-        "{}: some points lie {:.0f} km from the first one; remove such outliers, they "
-        "cost precision",
-        name, far / 1000.0F);
-  }
+  checkDropped(source, std::accumulate(far.begin(), far.end(), std::size_t{0}), cloud);
   return cloud;
+}
+
+void warnOfRest(std::size_t count, std::string_view unit, Cloud& cloud) {
+  if (count == 0) return;
+  cloud.warnings.push_back(
+      fmt::format("{}: {} {} after the last point, ignored", cloud.name, count, unit));
 }
 
 }  // namespace agricolmap::io

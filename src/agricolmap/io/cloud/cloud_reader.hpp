@@ -10,19 +10,17 @@
 #include <filesystem>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/cloud/read_options.hpp"
 
 namespace agricolmap::io {
 
-struct ReadOptions {
-  bool colours = true;  ///< read colours where the file has them
-};
-
-/// Reads a cloud; points in file order. `origin` is the first usable point rounded to whole metres.
-/// What floats lose against the file's doubles grows with the distance to it: 0.06 µm at 1 m, 4 µm
-/// at 100 m, 30 µm at 1 km. Points with a NaN, an infinity or a coordinate beyond 1e8 m are left
-/// out and counted. A file without colours gives an empty `rgb`. Nothing is allocated on the
-/// header's word alone. Throws InputError naming file, place and reason when the file is not what
-/// its header says.
+/// Reads a cloud; points in file order. `origin` is the first point that is one of the cloud's,
+/// rounded to whole metres; see assembleCloud. What floats lose against the file's doubles grows
+/// with the distance to it: 0.06 µm at 1 m, 4 µm at 100 m, 30 µm at 1 km. Points with a NaN or an
+/// infinity, and those more than 20 km from the others, are left out, counted and warned of: (0, 0,
+/// 0), say, that exporters write for points that they do not have. A file without colours gives an
+/// empty `rgb`. Nothing is allocated on the header's word alone. Throws InputError naming file,
+/// place and reason when the file is not what its header says.
 Cloud readCloud(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace agricolmap::io

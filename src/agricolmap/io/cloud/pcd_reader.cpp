@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <lzf.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstring>
@@ -265,8 +264,9 @@ std::uint64_t checkedBytes(const Header& header, std::uint64_t available, const 
   return header.points * each;
 }
 
+/// `rest` gets the number of bytes that follow.
 std::vector<std::byte> decompress(const Header& header, std::span<const std::byte> data,
-                                  const std::string& name) {
+                                  const std::string& name, std::size_t& rest) {
   std::array<std::uint32_t, 2> sizes{};
   if (data.size() < sizeof(sizes)) {
     throw InputError(fmt::format("{}: truncated: no compressed data follow the header", name));
@@ -287,9 +287,7 @@ std::vector<std::byte> decompress(const Header& header, std::span<const std::byt
     throw InputError(fmt::format("{}: {} bytes of data for {} points of {} bytes", name, plain,
                                  header.points, header.pointBytes()));
   }
-  if (compressed < data.size()) {
-    spdlog::warn("{}: {} bytes after the last point, ignored", name, data.size() - compressed);
-  }
+  rest = data.size() - compressed;
   std::vector<std::byte> out(plain);
   if (lzf_decompress(data.data(), compressed, out.data(), plain) != plain) {
     throw InputError(fmt::format("{}: the compressed data are damaged", name));
@@ -322,10 +320,9 @@ Cloud readAscii(const Header& header, const Roles& roles, std::string_view text,
     layout.colour = colourKindOf({type(0), type(1), type(2)});
   }
   const AsciiSource source(std::move(layout));
-  if (source.extraLines() > 0) {
-    spdlog::warn("{}: {} lines after the last point, ignored", name, source.extraLines());
-  }
-  return assembleCloud(source, name);
+  Cloud cloud = assembleCloud(source, name);
+  warnOfRest(source.extraLines(), "lines", cloud);
+  return cloud;
 }
 
 }  // namespace
@@ -339,16 +336,18 @@ Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions
       return readAscii(header, roles, file.text().substr(header.bytes), name);
     case Encoding::kBinary: {
       const std::uint64_t used = checkedBytes(header, data.size(), name);
-      if (used < data.size()) {
-        spdlog::warn("{}: {} bytes after the last point, ignored", name, data.size() - used);
-      }
-      return assembleCloud(BinarySource(columnsOf(header, roles, data.data(), true)), name);
+      Cloud cloud = assembleCloud(BinarySource(columnsOf(header, roles, data.data(), true)), name);
+      warnOfRest(data.size() - used, "bytes", cloud);
+      return cloud;
     }
     case Encoding::kCompressed:
       break;
   }
-  const std::vector<std::byte> plain = decompress(header, data, name);
-  return assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name);
+  std::size_t rest = 0;
+  const std::vector<std::byte> plain = decompress(header, data, name, rest);
+  Cloud cloud = assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name);
+  warnOfRest(rest, "bytes", cloud);
+  return cloud;
 }
 
 }  // namespace agricolmap::io

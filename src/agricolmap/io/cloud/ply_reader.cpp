@@ -1,7 +1,6 @@
 #include "agricolmap/io/cloud/ply_reader.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -38,6 +37,7 @@ struct VertexLayout {
   const PlyElement* vertex = nullptr;
   Indices xyz{};
   std::optional<Indices> colour;
+  bool partly_coloured = false;  ///< red or green, but not all three
 
   std::array<ScalarType, 3> types(const Indices& indices) const {
     const auto& p = vertex->properties;
@@ -68,9 +68,8 @@ VertexLayout vertexLayout(const PlyHeader& header, const std::string& name,
     if (!layout.colour) layout.colour = findAll(*it, names);
   }
   const auto is_red = [](const PlyProperty& p) { return p.name == "red" || p.name == "green"; };
-  if (!layout.colour && std::any_of(it->properties.begin(), it->properties.end(), is_red)) {
-    spdlog::warn("{}: its colours are incomplete (red, green and blue are needed); ignored", name);
-  }
+  layout.partly_coloured =
+      !layout.colour && std::any_of(it->properties.begin(), it->properties.end(), is_red);
   return layout;
 }
 
@@ -183,12 +182,10 @@ class ListedSource : public PointSource {
   const std::byte* end_ = nullptr;
 };
 
-void warnAboutRest(const PlyHeader& header, const PlyElement& vertex, std::size_t bytes,
-                   const std::string& name) {
-  const bool last =
-      std::all_of(header.elements.begin() + (&vertex - header.elements.data()) + 1,
-                  header.elements.end(), [](const PlyElement& e) { return e.count == 0; });
-  if (last && bytes > 0) spdlog::warn("{}: {} bytes after the last point, ignored", name, bytes);
+/// Whether nothing is announced behind the vertices.
+bool isLast(const PlyHeader& header, const PlyElement& vertex) {
+  return std::all_of(header.elements.begin() + (&vertex - header.elements.data()) + 1,
+                     header.elements.end(), [](const PlyElement& e) { return e.count == 0; });
 }
 
 BinaryColumns columnsOf(const VertexLayout& layout, const std::byte* data, bool swap) {
@@ -247,12 +244,14 @@ Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
   }
   if (vertex.hasLists()) {
     const ListedSource source(layout, data, swap, name);
-    warnAboutRest(header, vertex,
-                  static_cast<std::size_t>(data.data() + data.size() - source.end()), name);
-    return assembleCloud(source, name);
+    Cloud cloud = assembleCloud(source, name);
+    const auto rest = static_cast<std::size_t>(data.data() + data.size() - source.end());
+    if (isLast(header, vertex)) warnOfRest(rest, "bytes", cloud);
+    return cloud;
   }
-  warnAboutRest(header, vertex, data.size() - vertex.count * each, name);
-  return assembleCloud(BinarySource(columnsOf(layout, data.data(), swap)), name);
+  Cloud cloud = assembleCloud(BinarySource(columnsOf(layout, data.data(), swap)), name);
+  if (isLast(header, vertex)) warnOfRest(data.size() - vertex.count * each, "bytes", cloud);
+  return cloud;
 }
 
 std::vector<AsciiColumn> asciiColumns(const VertexLayout& layout) {
@@ -281,11 +280,9 @@ Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string
   }
   const AsciiSource source(
       {name, text, layout.vertex->count, asciiColumns(layout), layout.colourKind()});
-  const bool last = layout.vertex == &header.elements.back();
-  if (last && source.extraLines() > 0) {
-    spdlog::warn("{}: {} lines after the last point, ignored", name, source.extraLines());
-  }
-  return assembleCloud(source, name);
+  Cloud cloud = assembleCloud(source, name);
+  if (layout.vertex == &header.elements.back()) warnOfRest(source.extraLines(), "lines", cloud);
+  return cloud;
 }
 
 }  // namespace
@@ -293,10 +290,14 @@ Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string
 Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
   const PlyHeader header = parsePlyHeader(file.text(), name);
   const VertexLayout layout = vertexLayout(header, name, options);
-  if (header.format == PlyFormat::kAscii) {
-    return readAscii(header, layout, file.text().substr(header.bytes), name);
+  Cloud cloud = header.format == PlyFormat::kAscii
+                    ? readAscii(header, layout, file.text().substr(header.bytes), name)
+                    : readBinary(header, layout, file.bytes().subspan(header.bytes), name);
+  if (layout.partly_coloured) {
+    cloud.warnings.push_back(fmt::format(
+        "{}: its colours are incomplete (red, green and blue are needed); ignored", name));
   }
-  return readBinary(header, layout, file.bytes().subspan(header.bytes), name);
+  return cloud;
 }
 
 }  // namespace agricolmap::io

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/cloud/read_options.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 
 namespace agricolmap::io {

@@ -1,10 +1,6 @@
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
-
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <memory>
-#include <sstream>
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
@@ -89,25 +85,12 @@ TEST(PlyReader, KeepsUtmCoordinatesToAMicrometre) {
   EXPECT_TRUE(cloud.rgb.empty());
 }
 
-/// What is logged while it lives.
-class LogCapture {
- public:
-  LogCapture() : before_(spdlog::default_logger()) {
-    const auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>("capture", sink));
-  }
-  ~LogCapture() { spdlog::set_default_logger(before_); }
-  LogCapture(const LogCapture&) = delete;
-  LogCapture& operator=(const LogCapture&) = delete;
-  bool contains(const std::string& part) const {
-    return text_.str().find(part) != std::string::npos;
-  }
-  bool empty() const { return text_.str().empty(); }
-
- private:
-  std::ostringstream text_;
-  std::shared_ptr<spdlog::logger> before_;
-};
+/// All warnings of a cloud in one text.
+std::string warningsOf(const Cloud& cloud) {
+  std::string text;
+  for (const std::string& warning : cloud.warnings) text += warning + "\n";
+  return text;
+}
 
 TEST(PlyReader, WarnsOfCoarseFloatsAndOutliers) {
   const TempDir dir;
@@ -116,19 +99,111 @@ TEST(PlyReader, WarnsOfCoarseFloatsAndOutliers) {
     for (const float v : {1.0F, y, 2.0F, 1.0F, y, 2.0F}) append(content, v);
     return content;
   };
-  {
-    const LogCapture log;
-    read(dir, file(5000000.0F));
-    EXPECT_TRUE(log.contains("in steps of 50.0 cm"));
-    EXPECT_TRUE(log.contains("double"));
+  const std::string coarse = warningsOf(read(dir, file(5000000.0F)));
+  EXPECT_NE(coarse.find("cloud.ply: "), std::string::npos) << coarse;
+  EXPECT_NE(coarse.find("in steps of 50.0 cm"), std::string::npos) << coarse;
+  EXPECT_NE(coarse.find("double"), std::string::npos) << coarse;
+  EXPECT_EQ(warningsOf(read(dir, file(99000.0F))), "");
+}
+
+/// An ascii cloud with these lines.
+std::string asciiFile(const std::vector<std::string>& lines) {
+  std::string text =
+      header("ascii", "element vertex " + std::to_string(lines.size()) + "\n" + kXyzDouble);
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+/// Lines of a field in UTM coordinates.
+std::vector<std::string> utmLines(int count) {
+  std::vector<std::string> lines;
+  for (int i = 0; i < count; ++i) {
+    lines.push_back(std::to_string(500000.125 + 0.01 * i) + " " +
+                    std::to_string(5000000.5 + 0.005 * i) + " 300.25");
   }
-  {
-    const LogCapture log;
-    read(dir, file(99000.0F));
-    EXPECT_TRUE(log.empty());
-    read(dir, header("ascii", "element vertex 2\n" + kXyzFloat) + "0 0 0\n500000 5000000 0\n");
-    EXPECT_TRUE(log.contains("5000 km from the first one"));
+  return lines;
+}
+
+// Exporters write (0, 0, 0) for points that they do not have. Kept about it, floats in UTM come in
+// steps of half a metre.
+TEST(PlyReader, PlaceholdersAtZeroDoNotCoarsenTheCloud) {
+  const TempDir dir;
+  const Cloud clean = read(dir, asciiFile(utmLines(300)));
+  ASSERT_EQ(clean.origin, Eigen::Vector3d(500000, 5000001, 300));
+  for (const std::size_t bad : {1, 20, 400}) {
+    for (const bool first : {true, false}) {
+      std::vector<std::string> lines = utmLines(300);
+      lines.insert(first ? lines.begin() : lines.end(), bad, "0 0 0");
+      const Cloud cloud = read(dir, asciiFile(lines));
+      EXPECT_EQ(cloud.dropped_points, bad);
+      EXPECT_EQ(cloud.origin, clean.origin);
+      EXPECT_EQ(cloud.xyz, clean.xyz);
+      EXPECT_NE(warningsOf(cloud).find(std::to_string(bad) + " points were left out"),
+                std::string::npos)
+          << warningsOf(cloud);
+    }
   }
+  // Around zero they are points like others.
+  EXPECT_EQ(read(dir, asciiFile({"0 0 0", "1 2 3", "2 3 4"})).size(), 3U);
+  EXPECT_EQ(read(dir, asciiFile({"0 0 0"})).size(), 1U);
+}
+
+TEST(PlyReader, AStrayFirstPointIsNotTheOrigin) {
+  const TempDir dir;
+  std::vector<std::string> lines = utmLines(300);
+  lines.insert(lines.begin(), "7 -3 1");
+  const Cloud cloud = read(dir, asciiFile(lines));
+  EXPECT_EQ(cloud.dropped_points, 1U);
+  EXPECT_NEAR(cloud.origin.x(), 500001.6, 1.0);
+  EXPECT_NEAR(cloud.filePoint(0).y(), 5000000.5, 1e-6);
+  // One that is off by less than a field may be is kept, and the others lose nothing by it.
+  lines[0] = "500000 5015000 300";
+  const Cloud with = read(dir, asciiFile(lines));
+  EXPECT_EQ(with.dropped_points, 0U);
+  EXPECT_NEAR(with.origin.y(), 5000001.0, 1.0);
+  EXPECT_NEAR(with.filePoint(300).y(), 5000000.5 + 0.005 * 299, 1e-6);
+}
+
+// The few points that can be used are found, in whichever part of the file they are.
+TEST(PlyReader, MostPointsMayBeUnusable) {
+  const TempDir dir;
+  constexpr std::size_t kPoints = 3'000'000;
+  for (const std::size_t at : {std::size_t{40'000}, kPoints - 20}) {
+    std::string content = header("binary_little_endian",
+                                 "element vertex " + std::to_string(kPoints) + "\n" + kXyzFloat);
+    const std::size_t body = content.size();
+    content.append(kPoints * 12, '\xFF');  // NaN
+    const float zero[3] = {};
+    std::memcpy(content.data() + body, zero, 12);
+    for (std::size_t i = at; i < at + 10; ++i) {
+      const float point[3] = {400000.0F, 30000.0F + static_cast<float>(i - at), 300.0F};
+      std::memcpy(content.data() + body + 12 * i, point, 12);
+    }
+    const Cloud cloud = read(dir, content);
+    EXPECT_EQ(cloud.size(), 10U);
+    EXPECT_EQ(cloud.dropped_points, kPoints - 10);
+    EXPECT_EQ(cloud.origin, Eigen::Vector3d(400000, 30000, 300));
+  }
+}
+
+TEST(PlyReader, RefusesCloudsLargerThanAField) {
+  const TempDir dir;
+  // Millimetres.
+  std::vector<std::string> lines;
+  for (int i = 0; i < 100; ++i) lines.push_back(std::to_string(5000 * i) + " 5 0");
+  expectError<InputError>([&] { read(dir, asciiFile(lines)); }, {"cloud.ply", "20 km", "metres"});
+}
+
+TEST(PlyReader, WarnsOfWhatItIgnores) {
+  const TempDir dir;
+  const std::string rest = header("ascii", "element vertex 1\n" + kXyzFloat) + "0 1 2\n3 4 5\n";
+  EXPECT_NE(warningsOf(read(dir, rest)).find("1 lines after the last point"), std::string::npos);
+  std::string binary = header("binary_little_endian", "element vertex 1\n" + kXyzFloat);
+  EXPECT_NE(warningsOf(read(dir, binary + std::string(15, '\0'))).find("3 bytes after"),
+            std::string::npos);
+  const std::string part =
+      header("ascii", "element vertex 1\n" + kXyzFloat + "property uchar red\n") + "0 1 2 3\n";
+  EXPECT_NE(warningsOf(read(dir, part)).find("colours are incomplete"), std::string::npos);
 }
 
 TEST(PlyReader, ScalesWideColoursByTheFilesRange) {

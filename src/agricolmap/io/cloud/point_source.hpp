@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
@@ -99,10 +100,14 @@ ColourKind colourKindOf(const std::array<ScalarType, 3>& types);
 /// One stored value as a double.
 double loadScalar(const std::byte* from, ScalarType type, bool swap);
 
-/// Reads all points. The origin is the first usable point, rounded to whole metres. Points with a
-/// coordinate or colour that is not finite, or farther than 1e8 m from zero, are dropped and
-/// counted. Throws InputError naming `name` when no point is left or the colours fit no known
-/// range.
+/// Reads all points. The origin is the first point that says where the cloud is, rounded to whole
+/// metres, or, where that lies more than 1 km off, the median of about 1000 points spread over the
+/// file. Points with a coordinate or colour that is not finite, and those more than 20 km from the
+/// origin along an axis, are dropped and counted. Throws InputError naming `name` when no point is
+/// left, when more than half are too far off, or the colours fit no known range.
 Cloud assembleCloud(const PointSource& source, const std::string& name);
+
+/// Adds a warning to the cloud where `count` bytes or lines (`unit`) follow its last point.
+void warnOfRest(std::size_t count, std::string_view unit, Cloud& cloud);
 
 }  // namespace agricolmap::io

@@ -1,7 +1,6 @@
 #include "agricolmap/io/raster/raster_import.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -124,7 +123,7 @@ Cloud importOrthoDsm(const std::filesystem::path& ortho, const std::filesystem::
   const RasterHeights model = readHeights(dsm);
   checkMetres(image.name, image.place);
   checkMetres(model.name, model.place);
-  checkSameCrs(image.name, image.place, model.name, model.place);
+  const auto warning = checkSameCrs(image.name, image.place, model.name, model.place);
   Raster<float> heights = sampleAll(image, model, options.step);
   removeFarHeights(heights, options.max_height);
   Cloud cloud = toCloud(image, heights, options.step);
@@ -134,10 +133,7 @@ Cloud importOrthoDsm(const std::filesystem::path& ortho, const std::filesystem::
                     image.name, extentOf(image.place, image.colour.rows(), image.colour.cols()),
                     model.name, extentOf(model.place, model.height.rows(), model.height.cols())));
   }
-  if (cloud.dropped_points > 0) {
-    spdlog::info("{}: {} of {} pixels have no height in {}", image.name, cloud.dropped_points,
-                 cloud.dropped_points + cloud.size(), model.name);
-  }
+  if (warning) cloud.warnings.push_back(*warning);
   return cloud;
 }
 

@@ -168,15 +168,18 @@ TEST(RasterImport, RefusesWhatHasNoMetres) {
   expectError<InputError>([&] { importOrthoDsm(dir / "text.tif", dsm); }, {"text.tif", "raster"});
 }
 
-TEST(RasterImport, ToleratesAMissingCoordinateSystem) {
+TEST(RasterImport, ToleratesAMissingCoordinateSystemAndSaysSo) {
   const TempDir dir;
   Sheet model = planeModel();
   setPlane(model);
   Sheet sheet;
   sheet.epsg = 0;
-  EXPECT_EQ(
-      importOrthoDsm(writeSheet(dir / "o.tif", sheet), writeSheet(dir / "d.tif", model)).size(),
-      48U);
+  const Cloud cloud =
+      importOrthoDsm(writeSheet(dir / "o.tif", sheet), writeSheet(dir / "d.tif", model));
+  EXPECT_EQ(cloud.size(), 48U);
+  ASSERT_EQ(cloud.warnings.size(), 1U);
+  EXPECT_NE(cloud.warnings[0].find("o.tif: coordinate system not given"), std::string::npos)
+      << cloud.warnings[0];
 }
 
 TEST(RasterFile, OrdersBandsAndReadsWithoutGeoreference) {

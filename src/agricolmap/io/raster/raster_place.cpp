@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <ogr_spatialref.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 
@@ -51,13 +50,13 @@ void checkMetres(const std::string& name, const RasterPlace& place) {
   }
 }
 
-void checkSameCrs(const std::string& name, const RasterPlace& place, const std::string& other_name,
-                  const RasterPlace& other_place) {
+std::optional<std::string> checkSameCrs(const std::string& name, const RasterPlace& place,
+                                        const std::string& other_name,
+                                        const RasterPlace& other_place) {
   if (place.crs.empty() || other_place.crs.empty()) {
-    spdlog::warn(
+    return fmt::format(
         "{}: coordinate system not given; taken as metres in the same one for both rasters",
         place.crs.empty() ? name : other_name);
-    return;
   }
   const OGRSpatialReference one = horizontalCrs(place, name);
   const OGRSpatialReference other = horizontalCrs(other_place, other_name);
@@ -68,6 +67,7 @@ void checkSameCrs(const std::string& name, const RasterPlace& place, const std::
         "{} ({}) and {} ({}) have different coordinate systems; reproject one with gdalwarp -t_srs",
         name, one.GetName(), other_name, other.GetName()));
   }
+  return std::nullopt;
 }
 
 std::string extentOf(const RasterPlace& place, int rows, int cols) {

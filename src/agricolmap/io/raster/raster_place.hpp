@@ -1,6 +1,7 @@
 // What must hold of the places of rasters that are laid over each other.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "agricolmap/io/raster/raster_file.hpp"
@@ -10,10 +11,11 @@ namespace agricolmap::io {
 /// Throws InputError unless the raster `name` is georeferenced in metres.
 void checkMetres(const std::string& name, const RasterPlace& place);
 
-/// Throws InputError when both rasters say their coordinate systems and these differ; warns when
-/// one does not say.
-void checkSameCrs(const std::string& name, const RasterPlace& place, const std::string& other_name,
-                  const RasterPlace& other_place);
+/// Throws InputError when both rasters say their coordinate systems and these differ. A warning
+/// when one does not say.
+std::optional<std::string> checkSameCrs(const std::string& name, const RasterPlace& place,
+                                        const std::string& other_name,
+                                        const RasterPlace& other_place);
 
 /// "west..east, south..north" of a georeferenced raster, for messages [m].
 std::string extentOf(const RasterPlace& place, int rows, int cols);

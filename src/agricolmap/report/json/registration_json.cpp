@@ -40,11 +40,13 @@ Json stringsJson(const std::vector<std::string>& strings) {
   return json;
 }
 
-Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::GridMap& map) {
+Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::Footprint& footprint,
+               const map::GridMap& map) {
   Json json;
   json["path"] = validUtf8(cloud.name);
   json["points"] = cloud.size();
   json["dropped_points"] = cloud.dropped_points;
+  json["stray_points"] = footprint.left_out;
   json["has_colour"] = cloud.hasColour();
   json["origin_m"] = vectorJson(cloud.origin);
   const Box3 box = boundingBox(cloud);
@@ -53,7 +55,8 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::G
   json["ground"] = {{"tilt_deg", number(degrees(levelling.tilt))},
                     {"roughness_m", number(levelling.roughness)},
                     {"cells", levelling.cells},
-                    {"under_canopy", levelling.under_canopy}};
+                    {"under_canopy", levelling.under_canopy},
+                    {"support", number(levelling.support)}};
   json["map"] = {{"cell_m", number(map.frame.cell)},
                  {"rows", map.frame.rows},
                  {"cols", map.frame.cols},
@@ -221,6 +224,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
+  std::vector<std::string> warnings = fixed.warnings;
+  warnings.insert(warnings.end(), moving.warnings.begin(), moving.warnings.end());
+  json["warnings"] = stringsJson(warnings);
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
   json["transform"] = transformJson(fixed, moving, registration);
@@ -232,8 +238,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["evidence"] =
       evidenceJson(registration.placed ? registration.placed->evidence : verdict::Evidence{});
   json["counts"] = countsJson(registration);
-  json["fixed"] = cloudJson(fixed, registration.maps.frames.fixed, registration.maps.fixed);
-  json["moving"] = cloudJson(moving, registration.maps.frames.moving, registration.maps.moving);
+  const pipeline::PairMaps& maps = registration.maps;
+  json["fixed"] = cloudJson(fixed, maps.frames.fixed, maps.frames.fixed_footprint, maps.fixed);
+  json["moving"] = cloudJson(moving, maps.frames.moving, maps.frames.moving_footprint, maps.moving);
   json["times"] = timesJson(monitor);
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = threadsInForce(info.threads);

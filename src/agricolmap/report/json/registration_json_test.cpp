@@ -36,6 +36,7 @@ Cloud testCloud(const std::string& name, bool coloured) {
   cloud.xyz = {{0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 0.5F}};
   if (coloured) cloud.rgb = {{1, 2, 3}, {4, 5, 6}};
   cloud.dropped_points = 3;
+  cloud.warnings = {name + ": 3 points were left out"};
   return cloud;
 }
 
@@ -51,10 +52,13 @@ Json reportOf(const pipeline::Registration& registration) {
 }
 
 TEST(RegistrationJson, AcceptedHasEverything) {
-  const pipeline::Registration registration = testing::testRegistration();
+  pipeline::Registration registration = testing::testRegistration();
+  registration.frames.moving_footprint.left_out = 20;
   const Json json = reportOf(registration);
   EXPECT_EQ(json["status"], "accepted");
   EXPECT_EQ(json["reasons"].size(), 2U);
+  EXPECT_EQ(json["warnings"],
+            (Json{"uav.ply: 3 points were left out", "\xEF\xBF\xBD.ply: 3 points were left out"}));
   for (const char* key :
        {"yaw_deg", "tilt_x_deg", "tilt_y_deg", "scale_x", "scale_y", "scale_z", "shear"}) {
     EXPECT_TRUE(json["transform"]["parts"][key].is_number()) << key;
@@ -77,6 +81,8 @@ TEST(RegistrationJson, AcceptedHasEverything) {
             stages["level_s"].get<double>() + stages["grid_s"].get<double>());
   EXPECT_EQ(json["fixed"]["points"], 2);
   EXPECT_EQ(json["fixed"]["dropped_points"], 3);
+  EXPECT_EQ(json["fixed"]["stray_points"], 0);
+  EXPECT_EQ(json["moving"]["stray_points"], 20);
   EXPECT_EQ(json["fixed"]["has_colour"], false);
   EXPECT_EQ(json["moving"]["has_colour"], true);
   EXPECT_EQ(json["moving"]["box_max_m"][1], 5200002.2);

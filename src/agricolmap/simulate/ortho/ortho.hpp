@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "agricolmap/core/raster.hpp"
 #include "agricolmap/simulate/simulate.hpp"
@@ -24,6 +25,7 @@ struct OrthoField {
   Raster<std::uint8_t> valid;  ///< 0 = no data; empty: all valid
   Raster<float> height;        ///< surface [m]; empty: made up from greenness and simulated soil
   Raster<float> ground;        ///< terrain [m]; empty: from the lowest surface around
+  std::vector<std::string> warnings;  ///< what its reader found odd, file named
 };
 
 class OrthoScene;

@@ -166,12 +166,14 @@ void fillGaps(Raster<float>& raster) {
   }
 }
 
-/// Heights of a model on the grid. Cells without one become invalid and get a height from nearby.
+/// Heights of a model on the field's grid. Cells without one become invalid and get a height from
+/// nearby.
 Raster<float> resampleHeights(const std::filesystem::path& path, const io::RasterImage& mosaic,
-                              const GridFrame& grid, Raster<std::uint8_t>& valid) {
+                              const GridFrame& grid, OrthoField& field) {
   const io::RasterShape shape = io::readRasterShape(path);
   io::checkMetres(shape.name, shape.place);
-  io::checkSameCrs(mosaic.name, mosaic.place, shape.name, shape.place);
+  const auto warning = io::checkSameCrs(mosaic.name, mosaic.place, shape.name, shape.place);
+  if (warning) field.warnings.push_back(*warning);
   const std::optional<io::PixelWindow> window = windowUnder(grid, shape);
   Raster<float> result(grid.rows, grid.cols, std::numeric_limits<float>::quiet_NaN());
   bool any = false;
@@ -183,8 +185,8 @@ Raster<float> resampleHeights(const std::filesystem::path& path, const io::Raste
         [&](int r, int c) { return static_cast<double>(heights.height(r, c)); },
         [&](std::size_t i, double mean) { result[i] = static_cast<float>(mean); });
     for (std::size_t i = 0; i < result.size(); ++i) {
-      if (std::isnan(result[i])) valid[i] = 0;
-      any = any || valid[i] != 0;
+      if (std::isnan(result[i])) field.valid[i] = 0;
+      any = any || field.valid[i] != 0;
     }
   }
   if (!any) {
@@ -315,8 +317,8 @@ OrthoField readOrtho(const OrthoFiles& files, const OrthoFileOptions& options,
   field.gsd = grid.cell;
   if (georeferenced) field.corner = grid.corner;
   resampleColours(mosaic, grid, field);
-  if (!files.dsm.empty()) field.height = resampleHeights(files.dsm, mosaic, grid, field.valid);
-  if (!files.dtm.empty()) field.ground = resampleHeights(files.dtm, mosaic, grid, field.valid);
+  if (!files.dsm.empty()) field.height = resampleHeights(files.dsm, mosaic, grid, field);
+  if (!files.dtm.empty()) field.ground = resampleHeights(files.dtm, mosaic, grid, field);
   return field;
 }
 
