@@ -45,8 +45,8 @@ const simulate::SimulatedPair& tinyPair() {
 
 Registration registerTiny(const RegistrationOptions& options) {
   const simulate::SimulatedPair& pair = tinyPair();
-  StageTimes times;
-  return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+  Monitor monitor;
+  return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, monitor);
 }
 
 std::vector<std::string> allPaths() {
@@ -78,13 +78,13 @@ void expectSound(const Registration& result) {
     EXPECT_GE(p, 0.0);
     EXPECT_LE(p, 1.0);
   }
-  if (!result.has_transform) {
+  if (!result.transform) {
     EXPECT_EQ(result.verdict.status, verdict::Status::kRejected);
     return;
   }
-  EXPECT_TRUE(result.fixed_from_moving.matrix().allFinite());
-  EXPECT_TRUE(std::isfinite(result.evidence.significance));
-  EXPECT_TRUE(std::isfinite(result.evidence.uniqueness));
+  EXPECT_TRUE(result.transform->fixed_from_moving.matrix().allFinite());
+  EXPECT_TRUE(std::isfinite(result.placed->evidence.significance));
+  EXPECT_TRUE(std::isfinite(result.placed->evidence.uniqueness));
 }
 
 class LimitsTest : public testing::TestWithParam<std::string> {
