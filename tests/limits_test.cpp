@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Options, LimitsTest, testing::ValuesIn(allPaths()),
 
 TEST(LimitsTest, ThePairIsOneThatCanBeRegistered) {
   for (const char* name : {"default", "paper"}) {
-    EXPECT_TRUE(registerTiny(pipeline::preset(name)).has_transform) << name;
+    EXPECT_TRUE(registerTiny(pipeline::preset(name)).transform) << name;
   }
 }
 
@@ -139,7 +139,9 @@ TEST(LimitsTest, WhatIsRefusedForDoingNothingDoesNothing) {
         config::parseOption(field, high ? extremes.back() : extremes.front())();
       }
       const Registration after = registerTiny(options);
-      EXPECT_EQ(after.fixed_from_moving.matrix(), before.fixed_from_moving.matrix()) << name;
+      EXPECT_EQ(after.transform->fixed_from_moving.matrix(),
+                before.transform->fixed_from_moving.matrix())
+          << name;
       EXPECT_EQ(after.verdict.probability, before.verdict.probability) << name;
     }
   }
