@@ -93,7 +93,9 @@ class Problem {
     return result;
   }
 
+  /// NaN of nothing, which does not occur: there are at least `AffineOptions::least` matches.
   static double median(std::vector<double> values) {
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
