@@ -21,7 +21,7 @@ function(agricolmap_module name)
   target_link_libraries(agricolmap_${name} PUBLIC agricolmap_flags ${ARG_DEPS})
   if(AGRICOLMAP_BUILD_TESTS AND ARG_TESTS)
     add_executable(${name}_test ${ARG_TESTS})
-    target_link_libraries(${name}_test PRIVATE agricolmap_${name} GTest::gtest_main)
+    target_link_libraries(${name}_test PRIVATE agricolmap_${name} GTest::gmock GTest::gtest_main)
     gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
                          PROPERTIES LABELS unit TIMEOUT 300)
   endif()
