@@ -1,0 +1,101 @@
+// Mutual nearest neighbours among the descriptors, looked for exhaustively where the guess allows.
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/paper/flow/reach.hpp"
+#include "experiments/methods/features/features.hpp"
+
+namespace agricolmap::experiments {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+float hamming(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
+  int sum = 0;
+  std::size_t i = 0;
+  for (; i + 8 <= bytes; i += 8) {
+    std::uint64_t x = 0;
+    std::uint64_t y = 0;
+    std::memcpy(&x, a + i, 8);
+    std::memcpy(&y, b + i, 8);
+    sum += std::popcount(x ^ y);
+  }
+  for (; i < bytes; ++i) sum += std::popcount(static_cast<unsigned>(a[i] ^ b[i]));
+  return static_cast<float>(sum);
+}
+
+float distance(const Features& a, std::size_t i, const Features& b, std::size_t j) {
+  if (a.bytes > 0) return hamming(&a.bits[i * a.bytes], &b.bits[j * b.bytes], a.bytes);
+  return (a.real.col(static_cast<Eigen::Index>(i)) - b.real.col(static_cast<Eigen::Index>(j)))
+      .norm();
+}
+
+/// The nearest and the second nearest distance.
+struct Nearest {
+  std::uint32_t index = kNone;
+  float first = std::numeric_limits<float>::max();
+  float second = std::numeric_limits<float>::max();
+  void offer(std::size_t i, float d) {
+    if (d < first) {
+      second = first;
+      first = d;
+      index = static_cast<std::uint32_t>(i);
+    } else if (d < second) {
+      second = d;
+    }
+  }
+};
+
+std::vector<Eigen::Vector2d> placesOf(const Features& features, const GridFrame& frame) {
+  std::vector<Eigen::Vector2d> places;
+  places.reserve(features.size());
+  for (const Eigen::Vector2d& cell : features.cells) {
+    places.push_back(frame.centre(cell.y(), cell.x()));
+  }
+  return places;
+}
+
+}  // namespace
+
+std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
+                                 const Features& moving, const GridFrame& moving_frame,
+                                 const SearchSpace& space, const MatchOptions& options) {
+  const std::vector<Eigen::Vector2d> fixed_at = placesOf(fixed, fixed_frame);
+  const std::vector<Eigen::Vector2d> moving_at = placesOf(moving, moving_frame);
+  const paper::Reach reach(space);
+  std::vector<map::Box2> boxes(moving.size());
+  std::vector<Nearest> forward(moving.size());
+  parallelFor(
+      moving.size(),
+      [&](std::size_t i) {
+        boxes[i] = reach.forwardBox(moving_at[i]);
+        for (std::size_t j = 0; j < fixed.size(); ++j) {
+          if (boxes[i].contains(fixed_at[j])) forward[i].offer(j, distance(fixed, j, moving, i));
+        }
+      },
+      16);
+  std::vector<Nearest> backward(fixed.size());
+  parallelFor(
+      fixed.size(),
+      [&](std::size_t j) {
+        for (std::size_t i = 0; i < moving.size(); ++i) {
+          if (boxes[i].contains(fixed_at[j])) backward[j].offer(i, distance(fixed, j, moving, i));
+        }
+      },
+      16);
+  std::vector<Match> matches;
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const Nearest& best = forward[i];
+    if (best.index == kNone || backward[best.index].index != i) continue;
+    if (options.ratio < 1.0 &&
+        static_cast<double>(best.first) > options.ratio * static_cast<double>(best.second)) {
+      continue;
+    }
+    matches.push_back({moving_at[i], fixed_at[best.index]});
+  }
+  return matches;
+}
+
+}  // namespace agricolmap::experiments
