@@ -1,12 +1,9 @@
-# Writes ${HEADER} with the state of the sources (of ${watched} if set), so that no campaign mixes rows of different code.
-# Called at every build; touches the header only when it changes.
+# Writes ${HEADER} with the state of the sources that rows depend on, so that no campaign mixes rows
+# of different code. Called at every build; touches the header only when it changes.
 set(revision unknown)
+set(watched src experiments/pairs experiments/methods experiments/runner ":(exclude)*_test.cpp")
 find_package(Git QUIET)
 if(Git_FOUND)
-  if(NOT watched)
-    set(watched src bench/campaign_cases.cpp bench/pair_maker.cpp bench/register_pair.cpp bench/suites_calibrate.cpp
-      bench/suites_curves.cpp bench/suites_locate.cpp bench/suites_paper.cpp)
-  endif()
   execute_process(COMMAND ${GIT_EXECUTABLE} log -1 --format=%h -- ${watched}
                   WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE commit ERROR_QUIET
                   OUTPUT_STRIP_TRAILING_WHITESPACE)

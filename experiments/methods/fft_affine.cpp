@@ -166,19 +166,16 @@ class FftAffine : public Method {
     return all;
   }
 
-  std::vector<Candidate> distinct(std::vector<Candidate> found,
-                                          const GridFrame& frame) const {
-    std::stable_sort(
-        found.begin(), found.end(),
-        [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::vector<Candidate> distinct(std::vector<Candidate> found, const GridFrame& frame) const {
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
     std::vector<Candidate> result;
     for (const Candidate& candidate : found) {
       if (result.size() == static_cast<std::size_t>(options_.candidates)) break;
       if (!(candidate.score > 0.0)) break;
-      const bool known =
-          std::any_of(result.begin(), result.end(), [&](const Candidate& better) {
-            return farthestCorner(frame, better.pose, candidate.pose) < options_.apart;
-          });
+      const bool known = std::any_of(result.begin(), result.end(), [&](const Candidate& better) {
+        return farthestCorner(frame, better.pose, candidate.pose) < options_.apart;
+      });
       if (!known) result.push_back(candidate);
     }
     return result;

@@ -95,7 +95,7 @@ class IcpAffine : public Method {
     for (const map::VegetationPoint& p : points.fixed) {
       targets.emplace_back(p.position.x(), p.position.y(), p.height);
     }
-    const NearestPoints fixed(std::move(targets), 0.1);
+    const NearestPoints fixed(std::move(targets));
     map::Box2 box;
     for (const map::VegetationPoint& p : points.moving) box.extend(p.position);
     const Eigen::Vector2d middle = box.center();

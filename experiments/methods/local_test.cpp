@@ -17,7 +17,7 @@ TEST(NearestPoints, FindsWhatLookingAtAllOfThemFinds) {
     points.emplace_back(random.uniform(0.0, 4.0), random.uniform(0.0, 2.0),
                         random.uniform(0.0, 0.3));
   }
-  const NearestPoints index(points, 0.15);
+  const NearestPoints index(points);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d query(random.uniform(-0.5, 4.5), random.uniform(-0.5, 2.5),
                                 random.uniform(-0.2, 0.5));
@@ -31,6 +31,7 @@ TEST(NearestPoints, FindsWhatLookingAtAllOfThemFinds) {
       EXPECT_EQ(found->index, best);
     }
   }
+  EXPECT_FALSE(NearestPoints({}).nearest(Eigen::Vector3d::Zero(), 1.0).has_value());
 }
 
 /// A few centimetres off, scales right: what local methods are for.

@@ -1,5 +1,6 @@
 #include "experiments/methods/method.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
@@ -26,11 +27,17 @@ class OracleScale : public Method {
   std::string about() const override {
     return method_->about() + "; the true horizontal scales are given to it";
   }
+  Traits traits() const override {
+    Traits traits = method_->traits();
+    traits.rigid = false;
+    return traits;
+  }
+  std::string optionsText() const override { return method_->optionsText(); }
 
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     if (!input.truth) {
-      throw UsageError(name() + ": needs the true transform (--true-transform), for its scales");
+      throw UsageError(name() + ": needs the true transform, for its scales");
     }
     MethodInput known = input;
     known.guess = withTrueScales(input.guess, *input.truth, pipeline::meanOf(input.moving));
@@ -44,6 +51,13 @@ class OracleScale : public Method {
 };
 
 }  // namespace
+
+double factOf(const MethodOutcome& outcome, const std::string& name) {
+  for (const auto& [known, value] : outcome.facts) {
+    if (known == name) return value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 MethodOutcome Method::run(const MethodInput& input) const {
   MethodOutcome outcome;

@@ -1,16 +1,18 @@
-// A registration method of the comparison: one interface for the product and for its peers, so that
-// all of them get the same clouds, the same guess and the same limits.
+// A registration method: one interface for the product and for its peers, so that all of them get
+// the same clouds, the same guess and the same limits.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/core/stopwatch.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "experiments/pairs/coverage.hpp"
 
 namespace agricolmap::experiments {
 
@@ -20,36 +22,37 @@ struct MethodInput {
   const Cloud& moving;
   Eigen::Affine3d guess = Eigen::Affine3d::Identity();  ///< moving file → fixed file [m]
   PriorUncertainty prior = {};                          ///< how wrong the guess may be
-  /// The true transform, moving file → fixed file: read by `-oracle-scale` variants, which take its
-  /// horizontal scales and nothing else. Methods proper never see it.
+  /// The true transform, moving file → fixed file: its horizontal scales are what `-oracle-scale`
+  /// variants know, and right matches are counted by it. Methods proper never use it.
   std::optional<Eigen::Affine3d> truth = std::nullopt;
+  /// A match this near to the truth is right [m]: two cells of the paper's grid map.
+  double right_match = 0.04;
   /// After which a method that improves step by step hands back what it has [s]. Others run to
   /// their end; whoever starts them may end them.
   double time_limit = 600.0;
 };
 
-/// A pair of points that the data association took for one and the same, in file coordinates [m].
-/// Heights are those of the two ground planes: the association is a matter of the plane.
-struct MatchedPair {
-  Eigen::Vector3d moving;
-  Eigen::Vector3d fixed;
-};
-
-/// Matches, and how many of them the method took for coherent.
-struct MatchSet {
-  std::vector<MatchedPair> pairs;  ///< before anything coherent was chosen from them
-  std::size_t inliers = 0;
-};
-
 /// What a method found. No transform: it has no answer, and `why` says why.
 struct MethodOutcome {
   std::optional<Eigen::Affine3d> fixed_from_moving;  ///< moving file → fixed file [m]
-  bool accepted = false;            ///< whether the method itself stands by its transform
-  std::string why;                  ///< in plain words when it does not
-  StageTimes times;                 ///< seconds per stage
-  std::optional<MatchSet> matches;  ///< of methods that match points
-  /// Of those that match again from what the first matching gave: what the result is fitted to.
-  std::optional<MatchSet> rematches;
+  bool accepted = false;   ///< whether the method itself stands by its transform
+  bool ambiguous = false;  ///< it does not, as others are as good
+  std::string why;         ///< in plain words when it does not
+  StageTimes times;        ///< seconds per stage
+  /// Numbers that the method tells of its answer, by their column in rows.csv (runner/row.hpp).
+  std::vector<std::pair<std::string, double>> facts;
+  std::optional<StatedError> stated;  ///< how wrong it says that it may be
+};
+
+/// The fact of that name; NaN if the method told none.
+double factOf(const MethodOutcome& outcome, const std::string& name);
+
+/// What whoever runs a method must know of it.
+struct Traits {
+  bool slow = false;            ///< takes minutes: comes last
+  bool rigid = false;           ///< leaves the guess's scale error as it is
+  bool matches_points = false;  ///< tells `matches`, and may tell `rematches`
+  bool needs_guess = true;      ///< cannot search everywhere or for a unit
 };
 
 class Method {
@@ -61,6 +64,9 @@ class Method {
 
   virtual std::string name() const = 0;
   virtual std::string about() const = 0;  ///< one line
+  virtual Traits traits() const { return {}; }
+  /// All options, in a text that differs when one does; empty where only the source has any.
+  virtual std::string optionsText() const { return {}; }
   /// Registers. Clouds that cannot be used, too, are an outcome without a transform: never an
   /// exception and never the guess handed back. Throws Interrupted.
   MethodOutcome run(const MethodInput& input) const;
@@ -70,7 +76,8 @@ class Method {
   virtual void attempt(const MethodInput& input, MethodOutcome& outcome) const = 0;
 };
 
-/// Names of all methods, the product's first.
+/// Names of all methods that are built in, the product's first. Its presets take options besides:
+/// `default:KEY=VALUE:KEY=VALUE`.
 std::vector<std::string> methodNames();
 /// Throws UsageError, listing the known names, for an unknown one.
 std::unique_ptr<Method> makeMethod(const std::string& name);

@@ -1,7 +1,7 @@
 // The interface: names, failures, oracle scales; and the product's chains through it.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "agricolmap/core/error.hpp"
@@ -27,7 +27,7 @@ TEST(Methods, UnknownNamesListTheKnownOnes) {
   } catch (const UsageError& error) {
     const std::string what = error.what();
     EXPECT_NE(what.find("magic"), std::string::npos);
-    EXPECT_NE(what.find("agricolmap-rgb"), std::string::npos);
+    EXPECT_NE(what.find("paper-literal"), std::string::npos);
   }
 }
 
@@ -83,20 +83,55 @@ TEST(Product, PaperChainFindsTheStripAndSaysItsMatches) {
   prior.heading_deg = 2.0;
   prior.scale = 0.05;
   const simulate::SimulatedPair& pair = testing::smallPair();
-  const MethodOutcome outcome = makeMethod("agricolmap")->run(testing::inputOf(pair, error, prior));
+  MethodInput input = testing::inputOf(pair, error, prior);
+  input.truth = pair.best_affine;
+  input.right_match = 0.1;
+  const MethodOutcome outcome = makeMethod("paper")->run(input);
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
   EXPECT_TRUE(testing::errorsOf(outcome, pair).within({}));
-  ASSERT_TRUE(outcome.matches.has_value());
-  ASSERT_TRUE(outcome.rematches.has_value());
-  for (const MatchSet& set : {*outcome.matches, *outcome.rematches}) {
-    ASSERT_GT(set.pairs.size(), 100U);
-    EXPECT_LE(set.inliers, set.pairs.size());
-    const auto right =
-        std::count_if(set.pairs.begin(), set.pairs.end(), [&](const MatchedPair& match) {
-          return (pair.best_affine * match.moving - match.fixed).head<2>().norm() < 0.1;
-        });
-    EXPECT_GT(static_cast<double>(right), 0.4 * static_cast<double>(set.pairs.size()));
+  for (const std::string matching : {"matches", "rematches"}) {
+    const double all = factOf(outcome, matching);
+    ASSERT_GT(all, 100.0) << matching;
+    EXPECT_LE(factOf(outcome, matching + "_coherent"), all);
+    EXPECT_GT(factOf(outcome, matching + "_right"), 0.4 * all);
   }
+}
+
+TEST(Product, TellsWhatItsProbabilityRestsOn) {
+  const MethodOutcome outcome =
+      makeMethod("default")->run(testing::inputOf(testing::smallPair(), {}, {}));
+  ASSERT_TRUE(outcome.accepted) << outcome.why;
+  for (const char* name :
+       {"probability", "plane_probability", "uniqueness", "significance", "agreeing", "blocks",
+        "expected_rms", "local_rms", "height_deviation", "overlap", "attempts"}) {
+    EXPECT_TRUE(std::isfinite(factOf(outcome, name))) << name;
+  }
+  EXPECT_TRUE(outcome.stated.has_value());
+  EXPECT_TRUE(std::isnan(factOf(outcome, "matches"))) << "it matches no points";
+}
+
+TEST(Product, TakesOptionsAfterItsPreset) {
+  const std::unique_ptr<Method> changed = makeMethod("default:grid.cell=0.03:refine=cpd");
+  EXPECT_EQ(changed->name(), "default:grid.cell=0.03:refine=cpd");
+  EXPECT_NE(changed->optionsText(), makeMethod("default")->optionsText());
+  for (const char* wrong : {"default:grid.sell=0.03", "default:grid.cell",
+                            "default:", "default:grid.cell=wide", "default:grid.cell=-1"}) {
+    EXPECT_THROW(makeMethod(wrong), UsageError) << wrong;
+  }
+  EXPECT_THROW(makeMethod("defaults:grid.cell=0.03"), UsageError);
+}
+
+TEST(Traits, SayWhatEachMethodIs) {
+  EXPECT_FALSE(makeMethod("default")->traits().needs_guess);
+  EXPECT_FALSE(makeMethod("default")->traits().matches_points);
+  EXPECT_TRUE(makeMethod("paper")->traits().needs_guess);
+  EXPECT_TRUE(makeMethod("paper")->traits().matches_points);
+  EXPECT_TRUE(makeMethod("default:association=flow")->traits().needs_guess);
+  EXPECT_TRUE(makeMethod("go-icp")->traits().slow);
+  EXPECT_TRUE(makeMethod("go-icp")->traits().rigid);
+  EXPECT_TRUE(makeMethod("go-icp-oracle-scale")->traits().slow);
+  EXPECT_FALSE(makeMethod("go-icp-oracle-scale")->traits().rigid);
+  EXPECT_FALSE(makeMethod("icp-affine")->traits().rigid);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
-// Nearest neighbours among points that spread over a plane: bins seen from above.
+// Nearest neighbours among points in space.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,27 +12,21 @@ namespace agricolmap::experiments {
 class NearestPoints {
  public:
   struct Neighbour {
-    std::uint32_t index;  ///< in the points given
-    double distance;      ///< in space [m]
+    std::size_t index;  ///< in the points given
+    double distance;    ///< [m]
   };
-  /// `bin`: side of the bins [m]; a few points per bin are best.
-  NearestPoints(std::vector<Eigen::Vector3d> points, double bin);
-  /// The nearest point within `most` [m] of `query`; of equals the one given first.
+  explicit NearestPoints(std::vector<Eigen::Vector3d> points);
+  ~NearestPoints();
+  NearestPoints(const NearestPoints&) = delete;
+  NearestPoints& operator=(const NearestPoints&) = delete;
+
+  /// The nearest point within `most` [m] of `query`. Any thread.
   std::optional<Neighbour> nearest(const Eigen::Vector3d& query, double most) const;
-  const std::vector<Eigen::Vector3d>& points() const { return points_; }
+  const std::vector<Eigen::Vector3d>& points() const;
 
  private:
-  std::size_t binOf(int row, int col) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(cols_) +
-           static_cast<std::size_t>(col);
-  }
-  std::vector<Eigen::Vector3d> points_;
-  Eigen::Vector2d corner_ = Eigen::Vector2d::Zero();
-  double bin_;
-  int rows_ = 1;
-  int cols_ = 1;
-  std::vector<std::uint32_t> begin_;  ///< per bin, plus the end
-  std::vector<std::uint32_t> order_;  ///< points, bin by bin
+  struct Tree;  // nanoflann's k-d tree
+  std::unique_ptr<Tree> tree_;
 };
 
 }  // namespace agricolmap::experiments

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -95,20 +96,24 @@ void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen
       maps.frames.levelled_from_moving * Eigen::Translation3d(-input.moving.origin);
 }
 
-MatchSet matchSet(const pipeline::PairFrames& frames, const MethodInput& input,
-                  const std::vector<Match>& matches, std::size_t inliers) {
+void addMatches(const std::string& name, const pipeline::PairFrames& frames,
+                const MethodInput& input, const std::vector<Match>& matches, double coherent,
+                MethodOutcome& outcome) {
+  outcome.facts.emplace_back(name, static_cast<double>(matches.size()));
+  outcome.facts.emplace_back(name + "_coherent", coherent);
+  if (!input.truth) return;
+  // In the plane: the association is a matter of it, and heights are those of the ground.
   const Eigen::Affine3d fixed_file =
       Eigen::Translation3d(input.fixed.origin) * frames.levelled_from_fixed.inverse();
   const Eigen::Affine3d moving_file =
       Eigen::Translation3d(input.moving.origin) * frames.levelled_from_moving.inverse();
   const auto lifted = [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p.x(), p.y(), 0.0); };
-  MatchSet set;
-  set.inliers = inliers;
-  set.pairs.reserve(matches.size());
-  for (const Match& match : matches) {
-    set.pairs.push_back({moving_file * lifted(match.moving), fixed_file * lifted(match.fixed)});
-  }
-  return set;
+  const auto right = std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
+    const Eigen::Vector3d off =
+        *input.truth * (moving_file * lifted(match.moving)) - fixed_file * lifted(match.fixed);
+    return off.head<2>().norm() <= input.right_match;
+  });
+  outcome.facts.emplace_back(name + "_right", static_cast<double>(right));
 }
 
 }  // namespace agricolmap::experiments

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <string>
 #include <vector>
 
 #include "agricolmap/map/signal_map.hpp"
@@ -45,8 +46,10 @@ void setPlanePose(const PeerMaps& maps, const MethodInput& input, const Eigen::A
 void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine3d& pose,
                      MethodOutcome& outcome);
 
-/// Matches in the levelled frames, in file coordinates.
-MatchSet matchSet(const pipeline::PairFrames& frames, const MethodInput& input,
-                  const std::vector<Match>& matches, std::size_t inliers);
+/// Tells the counts of matches in the levelled frames as the facts `name`, `name_right` (where the
+/// truth is known) and `name_coherent`.
+void addMatches(const std::string& name, const pipeline::PairFrames& frames,
+                const MethodInput& input, const std::vector<Match>& matches, double coherent,
+                MethodOutcome& outcome);
 
 }  // namespace agricolmap::experiments

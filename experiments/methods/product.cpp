@@ -3,90 +3,148 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
-#include "agricolmap/map/data_term.hpp"
+#include "agricolmap/config/text.hpp"
+#include "agricolmap/config/yaml.hpp"
+#include "agricolmap/core/error.hpp"
 #include "experiments/methods/peer_maps.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
-/// A chain of the product: a preset, and what its flow compares.
-struct Chain {
-  std::string_view name;
-  std::string_view preset;
-  map::DataTerm term;
-  std::string_view about;
-};
+/// The variants of the paper's Tab. IV: only the flow's cost changes. The refinement tells plants
+/// by their greenness in all of them.
+constexpr std::string_view kVariants[] = {"paper:flow.describe.term=rgb",
+                                          "paper:flow.describe.term=exg",
+                                          "paper:flow.describe.term=height"};
 
-// The variants are those of the paper's Tab. IV: only the flow's cost changes. The refinement tells
-// plants by their greenness in all of them.
-constexpr std::array<Chain, 5> kChains = {{
-    {"agricolmap", "paper", map::DataTerm::kExgHeight,
-     "the paper's chain: flow on Excess Green and height, vote, affine, CPD"},
-    {"agricolmap-rgb", "paper", map::DataTerm::kRgb, "the paper's chain with its flow on colours"},
-    {"agricolmap-exg", "paper", map::DataTerm::kExg,
-     "the paper's chain with its flow on Excess Green alone"},
-    {"agricolmap-height", "paper", map::DataTerm::kHeight,
-     "the paper's chain with its flow on height alone"},
-    {"default", "default", map::DataTerm::kExgHeight, "the product's default preset"},
-}};
+/// The text before the first colon.
+std::string presetOf(const std::string& name) { return name.substr(0, name.find(':')); }
 
-class Product : public Method {
- public:
-  explicit Product(const Chain& chain) : chain_(chain) {}
-  std::string name() const override { return std::string(chain_.name); }
-  std::string about() const override { return std::string(chain_.about); }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    pipeline::RegistrationOptions options = pipeline::preset(std::string(chain_.preset));
-    options.prior = input.prior;
-    options.flow.describe.term = chain_.term;
-    const pipeline::Registration result =
-        pipeline::registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
-    fillFrom(result, input, outcome);
-    if (options.association != pipeline::AssociationKind::kFlow) outcome.matches.reset();
-  }
-
- private:
-  Chain chain_;
-};
-
-}  // namespace
-
-void fillFrom(const pipeline::Registration& result, const MethodInput& input,
-              MethodOutcome& outcome) {
-  outcome.accepted = result.verdict.status == verdict::Status::kAccepted;
-  if (!outcome.accepted) outcome.why = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
-  if (result.has_transform) outcome.fixed_from_moving = result.fixed_from_moving;
-  const locate::AssociationResult& found = result.association;
-  const auto count = [&](std::string_view wanted) {
-    for (const auto& [name, value] : found.counts) {
-      if (name == wanted) return static_cast<std::size_t>(value);
+/// Sets what stands after the preset's name.
+void change(pipeline::RegistrationOptions& options, const std::string& name) {
+  const OptionTable table = optionTable(options);
+  for (std::size_t at = name.find(':'); at != std::string::npos;) {
+    const std::size_t next = name.find(':', at + 1);
+    const std::string setting = name.substr(at + 1, next - at - 1);
+    const std::size_t equals = setting.find('=');
+    const OptionField* field = table.find(setting.substr(0, equals));
+    if (equals == std::string::npos || field == nullptr) {
+      throw UsageError(fmt::format("method {}: '{}' is not KEY=VALUE of a known option{}", name,
+                                   setting, config::suggestion(table, setting.substr(0, equals))));
     }
-    return std::size_t{0};
-  };
-  outcome.matches = matchSet(result.frames, input, found.all_matches, count("inliers"));
-  if (!found.all_rematches.empty()) {
-    outcome.rematches =
-        matchSet(result.frames, input, found.all_rematches, count("rematch_inliers"));
+    config::parseOption(*field, setting.substr(equals + 1))();
+    at = next;
   }
 }
 
+class Product : public Method {
+ public:
+  explicit Product(std::string name) : name_(std::move(name)) { optionsFor({}); }
+  std::string name() const override { return name_; }
+  std::string about() const override {
+    return name_ == presetOf(name_) ? "the product's preset" : "the product's preset, changed";
+  }
+  Traits traits() const override {
+    const bool flow = optionsFor({}).association == pipeline::AssociationKind::kFlow;
+    return {.matches_points = flow, .needs_guess = flow};
+  }
+  std::string optionsText() const override {
+    pipeline::RegistrationOptions options = optionsFor({});
+    return config::dumpYaml(optionTable(options));
+  }
+
+ protected:
+  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
+    const pipeline::RegistrationOptions options = optionsFor(input.prior);
+    const pipeline::Registration result =
+        pipeline::registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
+    fillFrom(result, input, options.association == pipeline::AssociationKind::kFlow, outcome);
+  }
+
+ private:
+  pipeline::RegistrationOptions optionsFor(const PriorUncertainty& prior) const {
+    pipeline::RegistrationOptions options = pipeline::preset(presetOf(name_));
+    options.prior = prior;
+    change(options, name_);
+    return options;
+  }
+
+  std::string name_;
+};
+
+/// Of the offsets of the blocks that agree [m].
+double blockRms(const verdict::Evidence& evidence) {
+  double sum = 0.0;
+  for (const verdict::BlockEvidence& block : evidence.blocks) {
+    if (block.agrees) sum += block.offset.squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(evidence.agreeing));
+}
+
+void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
+  const verdict::Evidence& evidence = result.evidence;
+  outcome.facts.insert(outcome.facts.end(),
+                       {{"probability", result.verdict.probability},
+                        {"plane_probability", result.verdict.plane_probability},
+                        {"uniqueness", evidence.uniqueness},
+                        {"significance", evidence.significance},
+                        {"agreeing", static_cast<double>(evidence.agreeing)},
+                        {"blocks", static_cast<double>(evidence.blocks.size())},
+                        {"overlap", result.overlap},
+                        {"block_rms", blockRms(evidence)},
+                        {"correlation", result.correlation}});
+  if (!result.uncertainty) return;
+  outcome.facts.insert(outcome.facts.end(),
+                       {{"expected_rms", result.uncertainty->expected_rms},
+                        {"local_rms", result.uncertainty->local_rms},
+                        {"height_deviation", result.uncertainty->height_deviation}});
+  outcome.stated = StatedError{*result.uncertainty, result.frames.levelled_from_fixed};
+}
+
+using Counts = std::vector<std::pair<std::string, double>>;
+
+double countOf(const Counts& counts, std::string_view wanted) {
+  const auto at = std::find_if(counts.begin(), counts.end(),
+                               [&](const auto& count) { return count.first == wanted; });
+  return at == counts.end() ? 0.0 : at->second;
+}
+
+}  // namespace
+
+void fillFrom(const pipeline::Registration& result, const MethodInput& input, bool has_matches,
+              MethodOutcome& outcome) {
+  outcome.accepted = result.verdict.status == verdict::Status::kAccepted;
+  outcome.ambiguous = result.verdict.status == verdict::Status::kAmbiguous;
+  if (!outcome.accepted) outcome.why = fmt::format("{}", fmt::join(result.verdict.reasons, "; "));
+  outcome.facts.emplace_back("attempts", countOf(result.counts, "attempts"));
+  if (result.has_transform) {
+    outcome.fixed_from_moving = result.fixed_from_moving;
+    addEvidence(result, outcome);
+  }
+  if (!has_matches) return;
+  const locate::AssociationResult& found = result.association;
+  addMatches("matches", result.frames, input, found.all_matches, countOf(found.counts, "inliers"),
+             outcome);
+  if (found.all_rematches.empty()) return;
+  addMatches("rematches", result.frames, input, found.all_rematches,
+             countOf(found.counts, "rematch_inliers"), outcome);
+}
+
 std::vector<std::string> productNames() {
-  std::vector<std::string> names;
-  for (const Chain& chain : kChains) names.emplace_back(chain.name);
+  std::vector<std::string> names = pipeline::presetNames();
+  names.insert(names.end(), std::begin(kVariants), std::end(kVariants));
   return names;
 }
 
 std::unique_ptr<Method> makeProduct(const std::string& name) {
-  for (const Chain& chain : kChains) {
-    if (chain.name == name) return std::make_unique<Product>(chain);
-  }
-  return nullptr;
+  const std::vector<std::string> presets = pipeline::presetNames();
+  if (std::find(presets.begin(), presets.end(), presetOf(name)) == presets.end()) return nullptr;
+  return std::make_unique<Product>(name);
 }
 
 }  // namespace agricolmap::experiments

@@ -1,4 +1,4 @@
-// The product's own chains as methods of the comparison.
+// The product's presets as methods.
 #pragma once
 
 #include <memory>
@@ -11,13 +11,15 @@
 
 namespace agricolmap::experiments {
 
-/// `agricolmap`, its variants by data term, and `default`.
+/// The presets, and those that the paper's Tab. IV compares.
 std::vector<std::string> productNames();
-/// nullptr for a name that is none of them.
+/// A preset or `PRESET:KEY=VALUE:…`, which changes its options. nullptr for a name that does not
+/// begin with a preset. Throws UsageError for a setting that no option takes.
 std::unique_ptr<Method> makeProduct(const std::string& name);
 
-/// Fills `outcome` from what the pipeline found; `accepted` is its verdict.
-void fillFrom(const pipeline::Registration& result, const MethodInput& input,
+/// Fills `outcome` from what the pipeline found; `accepted` is its verdict. `has_matches`: the
+/// association matched points.
+void fillFrom(const pipeline::Registration& result, const MethodInput& input, bool has_matches,
               MethodOutcome& outcome);
 
 }  // namespace agricolmap::experiments

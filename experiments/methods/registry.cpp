@@ -7,37 +7,42 @@
 
 #include "agricolmap/core/error.hpp"
 #include "experiments/methods/cpd_affine.hpp"
-#include "experiments/methods/features/feature_chain.hpp"
-#include "experiments/methods/features/opencv_features.hpp"
-#include "experiments/methods/features/surf_features.hpp"
 #include "experiments/methods/fft_affine.hpp"
-#include "experiments/methods/fpfh/fpfh_gicp.hpp"
 #include "experiments/methods/go_icp/go_icp.hpp"
 #include "experiments/methods/icp_affine.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/methods/product.hpp"
+#ifdef AGRICOLMAP_LIBRARY_PEERS
+#include "experiments/methods/features/feature_chain.hpp"
+#include "experiments/methods/features/opencv_features.hpp"
+#include "experiments/methods/features/surf_features.hpp"
+#include "experiments/methods/fpfh/fpfh_gicp.hpp"
 #include "experiments/methods/sift_affine.hpp"
+#endif
 
 namespace agricolmap::experiments {
 namespace {
 
 using Maker = std::function<std::unique_ptr<Method>()>;
 
-/// The peers, in the order in which they are listed.
+/// The peers, in the order in which they are listed. Those of OpenCV, dlib and Open3D only where
+/// these are built in.
 std::vector<std::pair<std::string, Maker>> peers() {
   return {
       {"icp-affine", [] { return makeIcpAffine(); }},
       {"cpd-affine", [] { return makeCpdAffine(); }},
       {"go-icp", [] { return makeGoIcp(); }},
       {"go-icp-oracle-scale", [] { return withOracleScale(makeGoIcp()); }},
+      {"fft-affine", [] { return makeFftAffine(); }},
+#ifdef AGRICOLMAP_LIBRARY_PEERS
       {"surf", [] { return makeFeatureChain(makeSurf(), "the paper's chain on SURF"); }},
       {"orb", [] { return makeFeatureChain(makeOrb(), "the paper's chain on ORB"); }},
       {"fast-brief",
        [] { return makeFeatureChain(makeFastBrief(), "the paper's chain on FAST and BRIEF"); }},
-      {"fft-affine", [] { return makeFftAffine(); }},
       {"sift-affine", [] { return makeSiftAffine(); }},
       {"fpfh-gicp", [] { return makeFpfhGicp(); }},
       {"fpfh-gicp-oracle-scale", [] { return withOracleScale(makeFpfhGicp()); }},
+#endif
   };
 }
 

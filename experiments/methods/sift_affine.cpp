@@ -58,6 +58,8 @@ class SiftAffine : public Method {
   std::string name() const override { return "sift-affine"; }
   std::string about() const override { return "SIFT and an affine by USAC with MAGSAC++"; }
 
+  Traits traits() const override { return {.matches_points = true}; }
+
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
     const PeerMaps maps = makePeerMaps(input, outcome.times);
@@ -73,7 +75,8 @@ class SiftAffine : public Method {
     });
     const std::optional<RobustFit> fit = outcome.times.run(
         "affine", [&] { return fitRobustly(matches, maps.moving.frame.cell, options_); });
-    outcome.matches = matchSet(maps.frames, input, matches, fit ? fit->inliers : 0);
+    addMatches("matches", maps.frames, input, matches, static_cast<double>(fit ? fit->inliers : 0),
+               outcome);
     if (!fit || !(fit->pose.linear().determinant() > 0.0)) {
       outcome.why = fmt::format("{} matches determine no affine", matches.size());
       return;

@@ -1,15 +1,14 @@
-// The kinds of pairs that a campaign measures, in suites: what is simulated, what the registration
-// is told about its initial guess, and what it should reach.
+// The kinds of pairs that are registered: what is simulated, cut from real imagery or read, and
+// what methods are told about the initial guess.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
-#include "campaign_summary.hpp"
+#include "experiments/pairs/published.hpp"
 
 namespace agricolmap::experiments {
 
@@ -18,7 +17,10 @@ enum class PairSource {
   kBeetMosaic,  ///< strips of a window of a real sugar-beet orthomosaic with made-up heights
   kBeetWhole,   ///< strips of all of its beets
   kSoybean,     ///< strips of a real orthomosaic with its surface model; both real
+  kPublished,   ///< two real clouds, read from files
 };
+/// "simulated", "semi-real" (strips of real imagery; the second sensor is simulated) or "real".
+std::string kindOf(PairSource source);
 
 /// Values that an option of the simulation takes, drawn anew for each field or strip.
 struct OptionRange {
@@ -30,17 +32,18 @@ struct OptionRange {
 
 struct Case {
   std::string name;
+  std::string dataset;  ///< crop or imagery that it is of
   PairSource source = PairSource::kSimulated;
-  simulate::SimulationOptions options;
+  simulate::SimulationOptions options = {};
   /// Drawn over `options`: what the drone's view depends on for each field, the rest for each
   /// strip.
-  std::vector<OptionRange> ranges;
-  Target target;
-  int max_pairs = 0;         ///< 0: as many as the campaign asks for
+  std::vector<OptionRange> ranges = {};
+  double setting = 0.0;      ///< value of the option that the suite varies, if it does
+  int max_pairs = 0;         ///< 0: as many as are asked for
   int strips_per_field = 1;  ///< so many consecutive seeds share a field and the drone's view of it
-  /// What the registration is told of the guess; nothing: its own default, the paper's.
-  std::optional<PriorUncertainty> prior;
-  bool scale_unknown = false;  ///< the registration is told that the moving file's unit is unknown
+  /// What methods are told of the guess; by default the paper's.
+  PriorUncertainty told = {};
+  std::optional<PublishedPair> published = {};  ///< of kPublished: its only pair
 
   /// The seed of the field that the pair of this seed lies in, and the strip's number in it.
   int fieldSeed(int seed) const { return seed - seed % strips_per_field; }
@@ -49,16 +52,9 @@ struct Case {
   simulate::SimulationOptions optionsFor(int seed) const;
   /// Equal for pairs whose drone's clouds are the same to the bit.
   std::string flightText(int seed) const;
-  /// All that distinguishes this case from others, to tell campaigns apart.
+  /// All that distinguishes its pairs from those of other cases. Of published ones the files' names
+  /// and sizes and the truth, but not where they lie; throws InputError for a file that is gone.
   std::string text() const;
 };
-
-/// "paper": the first campaign's; "locate": what locating must reach; "curves": one setting varied
-/// at a time; "calibrate": what the verdict's probability is fitted to; "develop": locate's kinds
-/// with other settings. docs/campaign-suites.md says which settings each has.
-std::vector<std::string> suiteNames();
-/// The cases of a suite, in the order of reports. `uniform`: errors of an initial guess uniform
-/// from zero to the case's, instead of always as large. Throws UsageError for an unknown suite.
-std::vector<Case> suiteCases(const std::string& suite, bool uniform);
 
 }  // namespace agricolmap::experiments

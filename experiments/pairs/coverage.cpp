@@ -1,9 +1,9 @@
-#include "agricolmap/evaluate/coverage.hpp"
+#include "experiments/pairs/coverage.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-namespace agricolmap::evaluate {
+namespace agricolmap::experiments {
 namespace {
 
 /// Points that are looked at, spread over the cloud.
@@ -11,11 +11,11 @@ constexpr std::size_t kMostPoints = 20000;
 
 }  // namespace
 
-std::optional<Coverage> coverageOf(const pipeline::Registration& registration, const Cloud& fixed,
-                                   const Cloud& moving, const Truth& truth) {
-  if (!registration.has_transform || !registration.uncertainty) return std::nullopt;
-  const verdict::PoseUncertainty& uncertainty = *registration.uncertainty;
-  const Eigen::Affine3d& levelled = registration.frames.levelled_from_fixed;
+std::optional<Coverage> coverageOf(const Eigen::Affine3d& found_transform,
+                                   const StatedError& stated, const Cloud& fixed,
+                                   const Cloud& moving, const evaluate::Truth& truth) {
+  const verdict::PoseUncertainty& uncertainty = stated.pose;
+  const Eigen::Affine3d levelled = stated.levelled_from_fixed * Eigen::Translation3d(-fixed.origin);
   const std::size_t step = std::max<std::size_t>(1, moving.size() / kMostPoints);
   using Parameters = Eigen::Matrix<double, 5, 1>;
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
@@ -23,12 +23,11 @@ std::optional<Coverage> coverageOf(const pipeline::Registration& registration, c
   double height = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < moving.size(); i += step) {
-    const Eigen::Vector3d found =
-        levelled * (registration.local_fixed_from_moving * moving.xyz[i].cast<double>());
-    const Eigen::Vector3d point = moving.origin + moving.xyz[i].cast<double>();
+    const Eigen::Vector3d point = moving.filePoint(i);
+    const Eigen::Vector3d found = levelled * (found_transform * point);
     const Eigen::Vector3d belongs =
         truth.points.empty() ? truth.best_affine * point : truth.points[i];
-    const Eigen::Vector3d missing = levelled * (belongs - fixed.origin) - found;
+    const Eigen::Vector3d missing = levelled * belongs - found;
     const Eigen::Matrix<double, 2, 5> j = uncertainty.jacobian(found.head<2>());
     normal += j.transpose() * j;
     right += j.transpose() * missing.head<2>();
@@ -47,4 +46,4 @@ std::optional<Coverage> coverageOf(const pipeline::Registration& registration, c
   return coverage;
 }
 
-}  // namespace agricolmap::evaluate
+}  // namespace agricolmap::experiments

@@ -7,9 +7,16 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
-#include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/verdict/uncertainty.hpp"
 
-namespace agricolmap::evaluate {
+namespace agricolmap::experiments {
+
+/// What a registration states about its own error.
+struct StatedError {
+  verdict::PoseUncertainty pose;
+  Eigen::Affine3d levelled_from_fixed =
+      Eigen::Affine3d::Identity();  ///< fixed local → levelled [m]
+};
 
 struct Coverage {
   /// What the true best affine differs by from the found one: the parameters of PoseUncertainty.
@@ -20,13 +27,9 @@ struct Coverage {
   double height_distance2 = 0.0;  ///< of the mean height: χ² of 1
 };
 
-/// χ² below which 90 % of the cases lie.
-inline constexpr double kChi2At90Of5 = 9.236;
-inline constexpr double kChi2At90Of2 = 4.605;
-inline constexpr double kChi2At90Of1 = 2.706;
+/// Of `found` (moving file → fixed file). Nothing for fewer than five points.
+std::optional<Coverage> coverageOf(const Eigen::Affine3d& found, const StatedError& stated,
+                                   const Cloud& fixed, const Cloud& moving,
+                                   const evaluate::Truth& truth);
 
-/// Nothing when the registration has no uncertainty.
-std::optional<Coverage> coverageOf(const pipeline::Registration& registration, const Cloud& fixed,
-                                   const Cloud& moving, const Truth& truth);
-
-}  // namespace agricolmap::evaluate
+}  // namespace agricolmap::experiments

@@ -6,7 +6,10 @@
 #include <numbers>
 #include <utility>
 
+#include "agricolmap/core/affine_fit.hpp"
+#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/simulate/ortho/ortho_file.hpp"
 #include "agricolmap/simulate/simulate.hpp"
@@ -62,7 +65,7 @@ Pair fromStrip(simulate::SimulatedStrip strip, std::shared_ptr<const Cloud> fixe
   Pair made;
   made.fixed = std::move(fixed);
   made.moving = std::move(strip.ugv);
-  made.prior = strip.prior;
+  made.guess = strip.prior;
   made.truth.best_affine = strip.best_affine;
   made.truth.points = std::move(strip.truth);
   made.overlaps = strip.overlaps;
@@ -76,17 +79,49 @@ simulate::OrthoFileOptions beetFileOptions() {
   return file;
 }
 
+/// A truth the wrong way round, or one that counts from other coordinates than the files', would
+/// make every method look wrong.
+void checkTruth(const PublishedPair& pair, const Cloud& fixed, const Cloud& moving,
+                const Eigen::Affine3d& truth) {
+  const Box3 box = boundingBox(fixed);
+  const Eigen::Vector2d middle =
+      (truth * (moving.origin + meanPoint(moving)) - fixed.origin).head<2>();
+  const Eigen::Vector2d low = box.min.head<2>().cast<double>();
+  const Eigen::Vector2d high = box.max.head<2>().cast<double>();
+  if ((middle.array() >= low.array()).all() && (middle.array() <= high.array()).all()) return;
+  const Eigen::Vector2d place = fixed.origin.head<2>() + middle;
+  const Eigen::Vector2d from = fixed.origin.head<2>() + low;
+  const Eigen::Vector2d to = fixed.origin.head<2>() + high;
+  throw InputError(fmt::format(
+      "{}: lays the row's middle at x {:.2f}, y {:.2f}, beside the drone's map (x {:.2f} "
+      "to {:.2f}, y {:.2f} to {:.2f}); it must take coordinates of {} to those of {}",
+      pair.truth_file->string(), place.x(), place.y(), from.x(), to.x(), from.y(), to.y(),
+      pair.moving_cloud.string(), pair.fixed_cloud.string()));
+}
+
+Cloud readUsable(const std::filesystem::path& path) {
+  Cloud cloud = io::readCloud(path);
+  if (cloud.empty()) throw InputError(fmt::format("{}: has no usable point", path.string()));
+  return cloud;
+}
+
 }  // namespace
 
-std::string PairMaker::unavailable(PairSource source) const {
-  if (source == PairSource::kSimulated) return {};
+std::string PairMaker::unavailable(const Case& chosen) const {
+  if (chosen.source == PairSource::kSimulated) return {};
+  if (chosen.published) {
+    if (chosen.published->true_fixed_from_moving) return {};
+    return fmt::format("{} has no truth; `agricolmap control-points` makes one",
+                       chosen.published->moving_cloud.parent_path().string());
+  }
   const std::filesystem::path path =
-      shared_ / (source == PairSource::kSoybean ? kSoybeanFolder : kBeetFile);
+      shared_ / (chosen.source == PairSource::kSoybean ? kSoybeanFolder : kBeetFile);
   if (std::filesystem::exists(path)) return {};
   return fmt::format("{} is not here; give --shared", path.string());
 }
 
 Pair PairMaker::make(const Case& chosen, int seed) {
+  if (chosen.published) return readPublished(*chosen.published);
   const simulate::SimulationOptions options = chosen.optionsFor(seed);
   const int strip = chosen.stripOf(seed);
   if (chosen.source == PairSource::kSoybean) return soybeanPair(options, strip);
@@ -95,8 +130,7 @@ Pair PairMaker::make(const Case& chosen, int seed) {
   return fromStrip(ortho_->strip(options, strip), {ortho_, &ortho_->uav()});
 }
 
-void PairMaker::fly(const Case& chosen, int seed,
-                    const simulate::SimulationOptions& options) {
+void PairMaker::fly(const Case& chosen, int seed, const simulate::SimulationOptions& options) {
   std::string flight = chosen.flightText(seed);
   if (flight == flown_) return;
   // A hectare takes gigabytes: the old view goes before the new one is made.
@@ -163,11 +197,27 @@ Pair PairMaker::soybeanPair(const simulate::SimulationOptions& options, int stri
   here.uav.gsd = soybean_->field.gsd;
   // The fixed cloud is the real one, as imported; only the strip passes through the simulator.
   Pair made = fromStrip(simulate::SimulatedOrtho(soybean_->field, here).strip(here, strip),
-                                soybean_->cloud);
+                        soybean_->cloud);
   const Eigen::Translation3d move(soybean_->place);
-  made.prior = move * made.prior;
+  made.guess = move * made.guess;
   made.truth.best_affine = move * made.truth.best_affine;
   for (Eigen::Vector3d& point : made.truth.points) point += soybean_->place;
+  return made;
+}
+
+Pair PairMaker::readPublished(const PublishedPair& pair) {
+  if (fixed_file_ != pair.fixed_cloud) {
+    // The old cloud goes before the new one is read.
+    fixed_file_.clear();
+    fixed_.reset();
+    fixed_ = std::make_shared<const Cloud>(readUsable(pair.fixed_cloud));
+    fixed_file_ = pair.fixed_cloud;
+  }
+  Pair made;
+  made.fixed = fixed_;
+  made.moving = readUsable(pair.moving_cloud);
+  made.guess = made.truth.best_affine = pair.true_fixed_from_moving.value();
+  checkTruth(pair, *fixed_, made.moving, made.guess);
   return made;
 }
 

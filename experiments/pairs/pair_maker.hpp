@@ -1,5 +1,5 @@
-// Makes the pairs of a campaign, keeping the drone's view of a field while strips of it are asked
-// for.
+// Makes the pairs of all kinds of cases, keeping the drone's view of a field while strips of it are
+// asked for.
 #pragma once
 
 #include <filesystem>
@@ -18,19 +18,21 @@ namespace agricolmap::experiments {
 struct Pair {
   std::shared_ptr<const Cloud> fixed;
   Cloud moving;
-  Eigen::Affine3d prior;  ///< moving file → fixed file
+  Eigen::Affine3d guess;  ///< moving file → fixed file
   evaluate::Truth truth;
   bool overlaps = true;
 };
 
 class PairMaker {
  public:
-  /// `shared`: folder of the real data.
+  /// `shared`: folder of the imagery that semi-real strips are cut from.
   explicit PairMaker(std::filesystem::path shared) : shared_(std::move(shared)) {}
 
-  /// Why pairs of this source cannot be made here; empty if they can.
-  std::string unavailable(PairSource source) const;
-  /// The case's pair of a seed: the same bits on any number of threads and in any order.
+  /// Why pairs of this case cannot be made here; empty if they can.
+  std::string unavailable(const Case& chosen) const;
+  /// The case's pair of a seed: the same bits on any number of threads and in any order. Of a
+  /// published one the same clouds for all seeds, with the truth as the guess; throws InputError
+  /// for clouds that cannot be used, and for a truth that lays the row beside the drone's map.
   Pair make(const Case& chosen, int seed);
 
  private:
@@ -45,6 +47,7 @@ class PairMaker {
   simulate::OrthoField readBeets(int seed) const;
   simulate::OrthoField readAllBeets() const;
   void loadSoybean();
+  Pair readPublished(const PublishedPair& pair);
 
   std::filesystem::path shared_;
   std::optional<Soybean> soybean_;
@@ -52,6 +55,9 @@ class PairMaker {
   std::shared_ptr<const simulate::SimulatedField> field_;
   std::shared_ptr<const simulate::SimulatedOrtho> ortho_;
   std::string flown_;  ///< Case::flightText of it
+  // The latest drone's cloud: a crop's rows follow each other and have it in common.
+  std::filesystem::path fixed_file_;
+  std::shared_ptr<const Cloud> fixed_;
 };
 
 }  // namespace agricolmap::experiments

@@ -15,7 +15,7 @@
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
 
-namespace agricolmap {
+namespace agricolmap::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -277,6 +277,15 @@ void addPairs(const fs::path& dir, const fs::path& folder, const CropFolder& cro
   }
 }
 
+/// The file's name with its folder's, and its size.
+std::string fileText(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (error) throw InputError(fmt::format("{}: {}", file.string(), error.message()));
+  return fmt::format("{}/{}:{}", file.parent_path().filename().string(), file.filename().string(),
+                     size);
+}
+
 }  // namespace
 
 std::vector<PublishedPair> findPublishedPairs(const fs::path& dir) {
@@ -298,4 +307,15 @@ std::vector<PublishedPair> findPublishedPairs(const fs::path& dir) {
   return pairs;
 }
 
-}  // namespace agricolmap
+std::string publishedText(const PublishedPair& pair) {
+  std::string text = fmt::format("{}|{}|{}|{}|", pair.crop, pair.row, fileText(pair.fixed_cloud),
+                                 fileText(pair.moving_cloud));
+  if (pair.true_fixed_from_moving) {
+    for (const double value : pair.true_fixed_from_moving->matrix().reshaped()) {
+      text += fmt::format("{:.17g} ", value);
+    }
+  }
+  return text;
+}
+
+}  // namespace agricolmap::experiments

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-namespace agricolmap {
+namespace agricolmap::experiments {
 
 /// A row of a crop and the drone's cloud that it belongs to.
 struct PublishedPair {
@@ -47,4 +47,8 @@ struct PublishedPair {
 /// wrong shape.
 std::vector<PublishedPair> findPublishedPairs(const std::filesystem::path& dir);
 
-}  // namespace agricolmap
+/// What tells a pair from another with the same names: files, their sizes and the truth, but not
+/// where they lie. Throws InputError for a file that is gone.
+std::string publishedText(const PublishedPair& pair);
+
+}  // namespace agricolmap::experiments

@@ -1,4 +1,4 @@
-#include "runner/published_sets.hpp"
+#include "experiments/pairs/published_cases.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,8 +7,8 @@
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/test_support.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
-#include "runner/experiments.hpp"
-#include "runner/pair_provider.hpp"
+#include "experiments/pairs/guess.hpp"
+#include "experiments/pairs/pair_maker.hpp"
 
 namespace agricolmap::experiments {
 namespace {
@@ -58,50 +58,49 @@ class PublishedFolder : public test::TempDir {
   std::string crop_;
 };
 
-TEST(PublishedSets, EachPairIsADataSetOfRealClouds) {
+TEST(PublishedCases, EachPairIsACaseOfRealClouds) {
   const PublishedFolder folder;
-  const std::vector<DataSet> sets = publishedDataSets({folder.path()});
-  ASSERT_EQ(sets.size(), 2U);
-  EXPECT_EQ(sets[0].name, "Sugar Beet- 10 m/ugv_row1") << "a comma would part the fields of a row";
-  EXPECT_EQ(toString(sets[0].kind), "real");
+  const std::vector<Case> cases = publishedCases({folder.path()});
+  ASSERT_EQ(cases.size(), 2U);
+  EXPECT_EQ(cases[0].name, "Sugar Beet- 10 m/ugv_row1") << "a comma would part the fields of a row";
+  EXPECT_EQ(kindOf(cases[0].source), "real");
 
-  PairProvider provider("/nowhere");
-  EXPECT_EQ(provider.unavailable(sets[0]), "");
-  EXPECT_THAT(provider.unavailable(sets[1]), HasSubstr("ugv_row2 has no truth"));
-  const Pair pair = provider.make(sets[0], 80001);
+  PairMaker maker("/nowhere");
+  EXPECT_EQ(maker.unavailable(cases[0]), "");
+  EXPECT_THAT(maker.unavailable(cases[1]), HasSubstr("ugv_row2 has no truth"));
+  const Pair pair = maker.make(cases[0], 80001);
   EXPECT_EQ(pair.fixed->size(), 4U);
   EXPECT_TRUE(pair.fixed->hasColour());
   EXPECT_EQ(pair.moving.xyz[1].x(), 4.0F);
-  EXPECT_TRUE(pair.prior.isApprox(rowTruth(), 1e-12)) << "exact, scales included";
+  EXPECT_TRUE(pair.guess.isApprox(rowTruth(), 1e-12)) << "exact, scales included";
   EXPECT_TRUE(pair.truth.best_affine.isApprox(rowTruth(), 1e-12));
   EXPECT_TRUE(pair.truth.points.empty());
 }
 
-TEST(PublishedSets, SeedsVaryTheGuessOnTheSameClouds) {
+TEST(PublishedCases, SeedsVaryTheGuessOnTheSameClouds) {
   const PublishedFolder folder;
-  const std::vector<DataSet> sets = publishedDataSets({folder.path()});
-  PairProvider provider("/nowhere");
-  const Pair one = provider.make(sets[0], 1);
-  const Pair two = provider.make(sets[0], 2);
+  const std::vector<Case> cases = publishedCases({folder.path()});
+  PairMaker maker("/nowhere");
+  const Pair one = maker.make(cases[0], 1);
+  const Pair two = maker.make(cases[0], 2);
   EXPECT_EQ(one.fixed, two.fixed) << "read once";
   EXPECT_EQ(one.moving.xyz, two.moving.xyz);
-  const Cell cell{"translation", 5.0, 5.0, 0.0, 0.0};
-  const Eigen::Affine3d first = wrongGuess(cell, 1, one.moving, one.prior);
-  const Eigen::Affine3d second = wrongGuess(cell, 2, two.moving, two.prior);
-  EXPECT_NEAR((first.translation() - one.prior.translation()).norm(), 5.0, 1e-6);
-  EXPECT_NEAR((second.translation() - two.prior.translation()).norm(), 5.0, 1e-6);
+  const AddedError error{5.0, 5.0, 0.0, 0.0};
+  const Eigen::Affine3d first = wrongGuess("translation", error, 1, one.moving, one.guess);
+  const Eigen::Affine3d second = wrongGuess("translation", error, 2, two.moving, two.guess);
+  EXPECT_NEAR((first.translation() - one.guess.translation()).norm(), 5.0, 1e-6);
+  EXPECT_NEAR((second.translation() - two.guess.translation()).norm(), 5.0, 1e-6);
   EXPECT_GT((first.translation() - second.translation()).norm(), 0.1);
-  EXPECT_TRUE(first.linear().isApprox(one.prior.linear(), 1e-9));
+  EXPECT_TRUE(first.linear().isApprox(one.guess.linear(), 1e-9));
 }
 
-TEST(PublishedSets, OtherDataOfTheSameNamesIsToldApart) {
+TEST(PublishedCases, OtherDataOfTheSameNamesIsToldApart) {
   const PublishedFolder folder;
   const PublishedFolder copy;
   const auto text = [](const PublishedFolder& one) {
-    return publishedText(publishedDataSets({one.path()}));
+    return publishedCases({one.path()}).front().text();
   };
   const std::string before = text(folder);
-  EXPECT_NE(before, "");
   EXPECT_EQ(text(copy), before) << "wherever it lies";
   copy.truth(1, Eigen::Translation3d(0.01, 0.0, 0.0) * rowTruth());
   EXPECT_NE(text(copy), before) << "another truth";
@@ -112,25 +111,23 @@ TEST(PublishedSets, OtherDataOfTheSameNamesIsToldApart) {
   larger.rgb.emplace_back();
   copy.cloud("ugv_row1", larger);
   EXPECT_NE(text(copy), before) << "another cloud";
-  EXPECT_EQ(publishedText(chooseDataSets({"soybean"}, Views::kDevelop, true)), "");
 }
 
-TEST(PublishedSets, WhatCannotBeComparedOnIsRefused) {
+TEST(PublishedCases, WhatCannotBeComparedOnIsRefused) {
   const PublishedFolder folder;
   const PublishedFolder copy;
-  test::expectError<InputError>([&] { publishedDataSets({folder / "nowhere"}); }, {"nowhere"});
+  test::expectError<InputError>([&] { publishedCases({folder / "nowhere"}); }, {"nowhere"});
   test::expectError<InputError>(
       [&] {
-        publishedDataSets({folder.path(), copy.path()});
+        publishedCases({folder.path(), copy.path()});
       },
       {"both are the pair 'Sugar Beet- 10 m/ugv_row1'", copy.path().c_str(), "one folder"});
 
-  PairProvider provider("/nowhere");
+  PairMaker maker("/nowhere");
   folder.truth(1, rowTruth().inverse());
-  test::expectError<InputError>(
-      [&] { provider.make(publishedDataSets({folder.path()}).front(), 1); },
-      {"ugv_row1/ground_truth.txt: lays the row's middle", "beside the drone's map",
-       "x 464000.00 to 464020.00"});
+  test::expectError<InputError>([&] { maker.make(publishedCases({folder.path()}).front(), 1); },
+                                {"ugv_row1/ground_truth.txt: lays the row's middle",
+                                 "beside the drone's map", "x 464000.00 to 464020.00"});
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "agricolmap/io/text/offset_file.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
-namespace agricolmap {
+namespace agricolmap::experiments {
 namespace {
 
 using test::TempDir;
@@ -175,4 +175,4 @@ TEST(Published, TruthsAndOffsetsOfTheWrongShape) {
 }
 
 }  // namespace
-}  // namespace agricolmap
+}  // namespace agricolmap::experiments

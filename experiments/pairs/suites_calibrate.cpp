@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "experiments/pairs/suites.hpp"
+#include "experiments/pairs/suite_parts.hpp"
 
 namespace agricolmap::experiments {
 namespace {
@@ -65,12 +65,12 @@ constexpr int kStrips = 6;  // of a field
 
 }  // namespace
 
-std::vector<Case> calibrateSuite(bool uniform) {
+std::vector<Case> calibrateCases(const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const auto& [name, crop] : namedCrops()) {
     const auto start = [&, crop = crop, name = name](const std::string& kind) {
       Case made =
-          cropCase(fmt::format("cal-{}-{}", kind, name), crop, kPaperGuess, uniform);
+          cropCase(fmt::format("cal-{}-{}", kind, name), crop, kPaperGuess, options.uniform);
       made.ranges = calibrationRanges(made.options);
       made.strips_per_field = kStrips;
       return made;

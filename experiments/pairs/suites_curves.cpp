@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "experiments/pairs/suites.hpp"
+#include "experiments/pairs/suite_parts.hpp"
 
 namespace agricolmap::experiments {
 namespace {
@@ -32,17 +32,17 @@ const std::vector<Series>& series() {
 
 }  // namespace
 
-std::vector<Case> curvesSuite(bool uniform) {
+std::vector<Case> curvesCases(const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const simulate::Crop crop : {simulate::Crop::kSugarBeet10m, simulate::Crop::kWinterWheat}) {
     for (const Series& one : series()) {
       for (const double value : one.values) {
-        Case made =
-            cropCase(fmt::format("curve-{}-{}={}", namedCrop(crop).name, one.name, value), crop,
-                     kPaperGuess, uniform);
+        Case made = cropCase(fmt::format("curve-{}-{}={}", nameOf(crop), one.name, value), crop,
+                             kPaperGuess, options.uniform);
         made.options.field.width = one.field;
         made.options.field.height = one.field;
         made.ranges = {{one.path, value, value}};
+        made.setting = value;
         made.strips_per_field = 6;
         cases.push_back(std::move(made));
       }

@@ -2,22 +2,21 @@
 // imagery.
 #include <utility>
 
-#include "experiments/pairs/suites.hpp"
+#include "experiments/pairs/suite_parts.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
 Case beetMosaicCase(bool uniform) {
-  Case made = cropCase("semireal-sugarbeet", simulate::Crop::kSugarBeet10m,
-                               {3.0, 6.0, 0.15}, uniform, {.min_success = 0.98, .max_rms = 0.008});
-  made.source = PairSource::kBeetMosaic;
+  Case made =
+      cropCase("semireal-sugarbeet", simulate::Crop::kSugarBeet10m, {3.0, 6.0, 0.15}, uniform);
+  useImagery(made, PairSource::kBeetMosaic, "semireal-sugarbeet");
   return made;
 }
 
 Case soybeanCase(bool uniform) {
-  Case made = cropCase("real-soybean", simulate::Crop::kSoybean, {1.0, 3.0, 0.10}, uniform,
-                               {.min_success = 1.0, .max_rms = 0.02, .worst_rms = true});
-  made.source = PairSource::kSoybean;
+  Case made = cropCase("real-soybean", simulate::Crop::kSoybean, {1.0, 3.0, 0.10}, uniform);
+  useImagery(made, PairSource::kSoybean, "real-soybean");
   made.max_pairs = 10;
   // The plot is 11.4 m x 5.6 m. Its plants are as they were at the flight: what differs is the
   // sampling, the noise, the colours and the path.
@@ -32,22 +31,20 @@ Case soybeanCase(bool uniform) {
 
 }  // namespace
 
-std::vector<Case> paperSuite(bool uniform) {
+std::vector<Case> paperCases(const SuiteOptions& options) {
   std::vector<NamedCrop> crops = namedCrops();
   crops.pop_back();  // maize is not among the paper's
-  const Target easy = {.min_success = 0.98, .max_rms = 0.010};
-  const Target joint = {.min_success = 0.95, .max_rms = 0.012};
-  const Target other = {.max_accepted = 0.02};
+  const bool uniform = options.uniform;
   std::vector<Case> cases;
   for (const auto& [name, crop] : crops) {
-    cases.push_back(cropCase(name + "-easy", crop, kEasyGuess, uniform, easy));
+    cases.push_back(cropCase(name + "-easy", crop, kEasyGuess, uniform));
   }
   for (const auto& [name, crop] : crops) {
-    cases.push_back(cropCase(name + "-joint", crop, kPaperGuess, uniform, joint));
+    cases.push_back(cropCase(name + "-joint", crop, kPaperGuess, uniform));
   }
   cases.push_back(cropCase("maize-joint", simulate::Crop::kMaize, kPaperGuess, uniform));
   for (const auto& [name, crop] : crops) {
-    cases.push_back(cropCase("other-field-" + name, crop, kPaperGuess, uniform, other));
+    cases.push_back(cropCase("other-field-" + name, crop, kPaperGuess, uniform));
     cases.back().options.other_field = true;
   }
   cases.push_back(beetMosaicCase(uniform));

@@ -1,48 +1,84 @@
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include "agricolmap/core/error.hpp"
-#include "experiments/pairs/cases.hpp"
+#include "agricolmap/io/test_support.hpp"
 #include "experiments/pairs/pair_maker.hpp"
+#include "experiments/pairs/suite.hpp"
+#include "experiments/pairs/views.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
-TEST(Cases, HaveDistinctNamesAndSoundOptions) {
-  std::set<std::string> names;
-  for (const std::string& suite : suiteNames()) {
-    for (const Case& one : suiteCases(suite, false)) {
+std::vector<Suite> allSuites() {
+  std::vector<Suite> suites;
+  for (const std::string& name : suiteNames()) {
+    for (const Settings settings : settingsOf(name)) {
+      suites.push_back(makeSuite(name, {.settings = settings}));
+    }
+  }
+  return suites;
+}
+
+std::vector<Case> casesOf(const std::string& suite, Settings settings = Settings::kFinal) {
+  return makeSuite(suite, {.settings = settings}).cases;
+}
+
+TEST(Suites, HaveDistinctNamesAndSoundOptions) {
+  for (const Suite& suite : allSuites()) {
+    std::set<std::string> names;
+    for (const Case& one : suite.cases) {
       EXPECT_TRUE(names.insert(one.name).second) << one.name;
+      EXPECT_FALSE(one.dataset.empty()) << one.name;
       for (const int seed : {20003, 20004, 20005}) {
         EXPECT_NO_THROW(checkOptions(one.optionsFor(seed))) << one.name;
       }
-      const bool nowhere =
-          one.options.other_field || one.options.beyond_map || one.options.mirrored;
-      EXPECT_FALSE(nowhere && one.target.min_success) << one.name;
-      if (suite == "calibrate") continue;
-      EXPECT_EQ(nowhere, one.target.max_accepted.has_value()) << one.name;
     }
   }
-  EXPECT_EQ(suiteCases("paper", false).size(), 15U);
-  EXPECT_THROW(suiteCases("no such suite", false), UsageError);
+  EXPECT_EQ(casesOf("paper").size(), 15U);
+  EXPECT_EQ(suiteNames().size(), 8U);
+}
+
+TEST(Suites, UnknownNamesListTheKnownOnes) {
+  test::expectError<UsageError>([] { makeSuite("rotation", {}); }, {"'rotation'", "heading"});
+  test::expectError<UsageError>([] { makeSuite("curves", {.settings = Settings::kDevelop}); },
+                                {"'curves'", "'develop'", "it has: final"});
+  test::expectError<UsageError>([] { parseSettings("late"); }, {"'late'", "develop, calibrate"});
+}
+
+TEST(Suites, EveryTargetIsOfACase) {
+  std::set<std::string> names;
+  for (const Suite& suite : allSuites()) {
+    for (const Case& one : suite.cases) names.insert(one.name);
+  }
+  std::ifstream file(AGRICOLMAP_TARGETS);
+  std::string line;
+  std::getline(file, line);
+  int targets = 0;
+  for (; std::getline(file, line); ++targets) {
+    EXPECT_TRUE(names.contains(line.substr(0, line.find(',')))) << line;
+  }
+  EXPECT_GT(targets, 100);
 }
 
 TEST(Cases, FirstCampaignKeepsItsSeedsAndDefaults) {
-  for (const Case& one : suiteCases("paper", false)) {
+  for (const Case& one : casesOf("paper")) {
     EXPECT_EQ(one.optionsFor(20017).seed, 20017) << one.name;
     EXPECT_EQ(one.stripOf(20017), 0) << one.name;
-    EXPECT_FALSE(one.prior.has_value()) << one.name;
+    EXPECT_EQ(one.told.translation, PriorUncertainty{}.translation) << one.name;
   }
 }
 
-TEST(Cases, ReportedCalibratedAndDevelopedSettingsDiffer) {
+TEST(Settings, OfLocatingAreDisjoint) {
   std::set<std::string> fields[3];
-  const std::string suites[] = {"locate", "calibrate", "develop"};
+  const Settings settings[] = {Settings::kFinal, Settings::kCalibrate, Settings::kDevelop};
   for (int i = 0; i < 3; ++i) {
-    for (const Case& one : suiteCases(suites[i], false)) {
+    for (const Case& one : casesOf("locate", settings[i])) {
       const simulate::SimulationOptions drawn = one.optionsFor(40);
       fields[i].insert(
           fmt::format("{} {:.4f}", static_cast<int>(one.options.crop), drawn.field.row_spacing));
@@ -53,8 +89,22 @@ TEST(Cases, ReportedCalibratedAndDevelopedSettingsDiffer) {
   }
 }
 
+TEST(Settings, OfDrawnViewsAreDisjoint) {
+  for (const PairSource source : {PairSource::kSimulated, PairSource::kBeetMosaic}) {
+    const auto develop = viewRanges(Settings::kDevelop, source);
+    const auto final = viewRanges(Settings::kFinal, source);
+    ASSERT_EQ(develop.size(), final.size());
+    for (std::size_t i = 0; i < develop.size(); ++i) {
+      ASSERT_EQ(develop[i].path, final[i].path);
+      for (const double value : develop[i].values) {
+        EXPECT_THAT(final[i].values, ::testing::Not(::testing::Contains(value))) << final[i].path;
+      }
+    }
+  }
+}
+
 TEST(Cases, StripsOfAFieldShareTheDronesView) {
-  for (const Case& one : suiteCases("calibrate", false)) {
+  for (const Case& one : casesOf("locate", Settings::kCalibrate)) {
     ASSERT_GT(one.strips_per_field, 1);
     const int first = 10 * one.strips_per_field;
     EXPECT_EQ(one.flightText(first), one.flightText(first + 1)) << one.name;
@@ -93,9 +143,10 @@ TEST(PairMaker, KeepsTheViewAndDoesNotDependOnTheOrder) {
 /// Needs the shared data; the mosaic's place and heights must survive cutting and shifting.
 TEST(Cases, SoybeanTruthLiesOnTheImportedCloud) {
   PairMaker maker(AGRICOLMAP_SHARED_DIR);
-  const std::string missing = maker.unavailable(PairSource::kSoybean);
+  const std::string missing =
+      maker.unavailable({.name = {}, .dataset = {}, .source = PairSource::kSoybean});
   if (!missing.empty()) GTEST_SKIP() << missing;
-  for (const Case& one : suiteCases("paper", false)) {
+  for (const Case& one : casesOf("paper")) {
     if (one.source != PairSource::kSoybean) continue;
     const Pair pair = maker.make(one, 3);
     const evaluate::RegistrationErrors errors =
@@ -114,9 +165,10 @@ TEST(Cases, SoybeanTruthLiesOnTheImportedCloud) {
 /// The outline of the beets must hold strips everywhere it says.
 TEST(Cases, AllOfTheBeetMosaicHasRoomForStrips) {
   PairMaker maker(AGRICOLMAP_SHARED_DIR);
-  const std::string missing = maker.unavailable(PairSource::kBeetWhole);
+  const std::string missing =
+      maker.unavailable({.name = {}, .dataset = {}, .source = PairSource::kBeetWhole});
   if (!missing.empty()) GTEST_SKIP() << missing;
-  for (const Case& one : suiteCases("locate", false)) {
+  for (const Case& one : casesOf("locate")) {
     if (one.source != PairSource::kBeetWhole) continue;
     const Pair pair = maker.make(one, 2);
     const double area = static_cast<double>(pair.fixed->size()) * std::pow(one.options.uav.gsd, 2);

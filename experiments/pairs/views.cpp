@@ -1,10 +1,5 @@
 #include "experiments/pairs/views.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include "agricolmap/core/error.hpp"
-
 namespace agricolmap::experiments {
 namespace {
 
@@ -62,22 +57,12 @@ const std::vector<Drawn>& fieldSettings() {
 
 }  // namespace
 
-std::vector<std::string> viewNames() { return {"develop", "final"}; }
-
-Views parseViews(const std::string& name) {
-  if (name == "develop") return Views::kDevelop;
-  if (name == "final") return Views::kFinal;
-  throw UsageError(
-      fmt::format("unknown settings '{}'; there are: {}", name, fmt::join(viewNames(), ", ")));
-}
-
-std::string toString(Views views) { return views == Views::kDevelop ? "develop" : "final"; }
-
-std::vector<OptionRange> viewRanges(Views views, PairSource source) {
+std::vector<OptionRange> viewRanges(Settings settings, PairSource source) {
   std::vector<OptionRange> ranges;
-  const auto add = [&](const std::vector<Drawn>& settings) {
-    for (const Drawn& one : settings) {
-      ranges.push_back({one.path, 0.0, 0.0, views == Views::kDevelop ? one.develop : one.final});
+  const auto add = [&](const std::vector<Drawn>& all) {
+    for (const Drawn& one : all) {
+      ranges.push_back(
+          {one.path, 0.0, 0.0, settings == Settings::kDevelop ? one.develop : one.final});
     }
   };
   add(sensorSettings());

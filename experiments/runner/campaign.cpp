@@ -1,87 +1,56 @@
-#include "runner/campaign.hpp"
+#include "experiments/runner/campaign.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
-#include "runner/pair_provider.hpp"
-#include "runner/progress.hpp"
-#include "runner/run_method.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "experiments/runner/progress.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
-constexpr std::size_t kLostSettings = 3;
-constexpr std::size_t kLostRuns = 6;
-
-/// A curve of one method on one pair, worked off setting by setting, so that what comes next can
-/// depend on what came before.
-struct Chain {
-  const Curve* curve;
-  std::string method;
-};
-
-Row rowFor(const DataSet& data, const Cell& cell, int seed, const std::string& method) {
-  Row row;
-  row.dataset = data.name;
-  row.kind = toString(data.kind);
-  row.experiment = cell.experiment;
-  row.scale = cell.scale;
-  row.setting = cell.setting;
-  row.seed = seed;
-  row.method = method;
-  return row;
-}
-
-/// One pair and the chains that are not complete on it.
+/// Works off the chains of one pair, several at a time.
 class Batch {
  public:
-  Batch(const CampaignOptions& options, const DataSet& data, int seed, bool slow, RowTable& table)
-      : options_(&options), data_(&data), seed_(seed), table_(&table) {
-    for (const Curve& curve : options.curves) {
-      for (const std::string& method : options.methods) {
-        if (isSlow(method) != slow || !takesPart(method, curve.experiment)) continue;
-        if (left(curve, method) > 0) chains_.push_back({&curve, method});
-      }
-    }
-  }
-  bool empty() const { return chains_.empty(); }
+  Batch(const CampaignScope& scope, const Job& job, double make_s, PairRuns& runs, RowTable& table,
+        Progress& progress)
+      : scope_(scope),
+        job_(job),
+        make_s_(make_s),
+        runs_(runs),
+        table_(table),
+        progress_(progress),
+        earlier_(table.rows().size()) {}
 
-  void run(PairFiles& files, Progress& progress) {
-    // What other pairs showed, as it was before this one: the same on any number of threads.
-    earlier_ = table_->rows();
+  void run(int jobs, int threads_each) {
+    threads_each_ = threads_each;
     std::vector<std::thread> threads;
-    for (int i = 0; i < options_->jobs; ++i) {
-      threads.emplace_back([&] { work(files, progress); });
-    }
+    for (int i = 1; i < jobs; ++i) threads.emplace_back([this] { work(); });
+    work();
     for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
     throwIfInterrupted();
   }
 
  private:
-  std::size_t left(const Curve& curve, const std::string& method) const {
-    return static_cast<std::size_t>(
-        std::count_if(curve.cells.begin(), curve.cells.end(), [&](const Cell& cell) {
-          return table_->find(rowFor(*data_, cell, seed_, method).key()) == nullptr;
-        }));
-  }
-
-  void work(PairFiles& files, Progress& progress) {
+  void work() {
     try {
       while (true) {
         std::size_t mine = 0;
         {
           const std::lock_guard lock(mutex_);
-          if (error_ || next_ >= chains_.size()) return;
+          if (error_ || next_ >= job_.chains.size()) return;
           mine = next_++;
         }
-        runChain(mine, files, progress);
+        runChain(job_.chains[mine], fmt::format("run{}", mine));
       }
     } catch (...) {
       const std::lock_guard lock(mutex_);
@@ -89,57 +58,71 @@ class Batch {
     }
   }
 
-  void runChain(std::size_t number, PairFiles& files, Progress& progress) {
-    const Chain& chain = chains_[number];
-    std::vector<Row> known;
-    for (const Row& row : earlier_) {
-      const bool other = row.dataset != data_->name || row.seed != seed_;
-      if (row.method == chain.method && other) known.push_back(row);
-    }
-    for (std::size_t i = 0; i < chain.curve->cells.size(); ++i) {
-      const Cell& cell = chain.curve->cells[i];
-      Row row = rowFor(*data_, cell, seed_, chain.method);
-      const auto done = doneRow(row.key());
-      if (done) {
+  void runChain(const Chain& chain, const std::string& name) {
+    std::vector<Row> known = earlierRows(chain);
+    for (std::size_t i = 0; i < chain.errors.size(); ++i) {
+      Row row = rowFor(scope_, chain, chain.errors[i], job_.seed);
+      if (const std::optional<Row> done = doneRow(row.key())) {
         known.push_back(*done);
         continue;
       }
-      if (cannotBeRight(chain.method, cell)) {
-        row.status = "skipped";
-        row.note = "rigid";
-      } else if (chain.curve->rising &&
-                 hopeless(known, *chain.curve, i, row.dataset, row.kind, row.method)) {
-        row.status = "skipped";
-        row.note = "lost at smaller errors";
-      } else {
-        runMethod({options_->program, chain.method, options_->time_limit}, files, cell,
-                  fmt::format("run{}", number), row);
-      }
+      row.make_s = make_s_;
+      row.threads = threads_each_;
+      runOrSkip(chain, i, known, name, row);
       known.push_back(row);
       const std::lock_guard lock(mutex_);
-      table_->append(row);
-      progress.done(row);
+      table_.append(row);
+      progress_.done(row);
+    }
+  }
+
+  /// What other pairs showed, as it was before this one: the same on any number of threads.
+  std::vector<Row> earlierRows(const Chain& chain) {
+    std::vector<Row> rows;
+    if (!chain.rising) return rows;
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = 0; i < earlier_; ++i) {
+      const Row& row = table_.rows()[i];
+      const bool other = row.case_name != chain.chosen->name || row.seed != job_.seed;
+      if (other && row.method == chain.method->name()) rows.push_back(row);
+    }
+    return rows;
+  }
+
+  void runOrSkip(const Chain& chain, std::size_t i, const std::vector<Row>& known,
+                 const std::string& name, Row& row) {
+    const AddedError* error = chain.errors[i];
+    if (error != nullptr && cannotBeRight(chain.method->traits(), *error)) {
+      row.status = "skipped";
+      row.message = "rigid";
+    } else if (hopeless(known, chain, i)) {
+      row.status = "skipped";
+      row.message = "lost at smaller errors";
+    } else {
+      runs_.run(*chain.method, {chain.suite->name, error, toldFor(chain, error)}, name, row);
     }
   }
 
   std::optional<Row> doneRow(const std::string& key) {
     const std::lock_guard lock(mutex_);
-    const Row* found = table_->find(key);
+    const Row* found = table_.find(key);
     return found == nullptr ? std::nullopt : std::optional<Row>(*found);
   }
 
-  const CampaignOptions* options_;
-  const DataSet* data_;
-  int seed_;
-  RowTable* table_;
-  std::vector<Chain> chains_;
-  std::vector<Row> earlier_;
+  const CampaignScope& scope_;
+  const Job& job_;
+  double make_s_;
+  PairRuns& runs_;
+  RowTable& table_;
+  Progress& progress_;
+  std::size_t earlier_;  ///< rows that were there before this pair
+  int threads_each_ = 0;
   std::mutex mutex_;
   std::size_t next_ = 0;
   std::exception_ptr error_;
 };
 
-/// A folder that goes when the batch does.
+/// A folder that goes when the pair does.
 class ScratchFolder {
  public:
   explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {
@@ -156,7 +139,6 @@ class ScratchFolder {
   }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
 
  private:
   std::filesystem::path path_;
@@ -164,50 +146,29 @@ class ScratchFolder {
 
 }  // namespace
 
-bool isSlow(const std::string& method) { return method.starts_with("go-icp"); }
-
-bool cannotBeRight(const std::string& method, const Cell& cell) {
-  const bool rigid = method == "go-icp" || method == "fpfh-gicp";
-  return rigid && cell.scale > evaluate::SuccessLimits{}.scale;
-}
-
-bool hopeless(const std::vector<Row>& rows, const Curve& curve, std::size_t next,
-              const std::string& dataset, const std::string& kind, const std::string& method) {
-  if (next < kLostSettings) return false;
-  std::size_t runs = 0;
-  for (std::size_t i = next - kLostSettings; i < next; ++i) {
-    const Cell& cell = curve.cells[i];
-    bool own = false;
-    for (const Row& row : rows) {
-      if (row.method != method || row.kind != kind || row.experiment != cell.experiment ||
-          row.scale != cell.scale || row.setting != cell.setting) {
-        continue;
-      }
-      if (row.success()) return false;
-      ++runs;
-      own = own || row.dataset == dataset;
-    }
-    if (!own) return false;
+bool runCampaign(const CampaignScope& scope, const CampaignOptions& options, PairMaker& maker,
+                 RowTable& table) {
+  const std::vector<Job> jobs = planCampaign(scope, table);
+  const Stopwatch watch;
+  Progress progress(scope, jobs, options.jobs, table);
+  // In process the limit that is in force, of all cores or fewer.
+  const int threads_each = options.runs.in_process
+                               ? static_cast<int>(tbb::global_control::active_value(
+                                     tbb::global_control::max_allowed_parallelism))
+                               : options.runs.threads;
+  for (const Job& job : jobs) {
+    if (options.stop_after > 0.0 && watch.seconds() > options.stop_after) return false;
+    throwIfInterrupted();
+    progress.now(job.chosen->name, job.seed);
+    std::optional<ScratchFolder> scratch;
+    if (!options.runs.in_process) scratch.emplace(options.scratch);
+    const Stopwatch making;
+    Pair pair = maker.make(*job.chosen, job.seed);
+    const double make_s = making.seconds();
+    PairRuns runs(std::move(pair), job.seed, options.runs, options.scratch);
+    Batch(scope, job, make_s, runs, table, progress).run(options.jobs, threads_each);
   }
-  return runs >= kLostRuns;
-}
-
-void runCampaign(const CampaignOptions& options, RowTable& table) {
-  PairProvider provider(options.shared);
-  Progress progress(options, table);
-  for (int seed = options.first_seed; seed < options.first_seed + options.pairs; ++seed) {
-    for (const bool slow : {false, true}) {
-      for (const DataSet& data : options.datasets) {
-        Batch batch(options, data, seed, slow, table);
-        if (batch.empty()) continue;
-        throwIfInterrupted();
-        progress.now(data.name, seed);
-        const ScratchFolder scratch(options.scratch);
-        PairFiles files(scratch.path(), provider.make(data, seed), seed);
-        batch.run(files, progress);
-      }
-    }
-  }
+  return true;
 }
 
 }  // namespace agricolmap::experiments

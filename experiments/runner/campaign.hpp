@@ -1,43 +1,26 @@
-// All runs of the comparison that are not done yet: seed by seed, several children at a time.
+// Runs what is left of a campaign.
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
-#include "runner/datasets.hpp"
-#include "runner/experiments.hpp"
-#include "runner/rows.hpp"
+#include "experiments/pairs/pair_maker.hpp"
+#include "experiments/runner/plan.hpp"
+#include "experiments/runner/row_table.hpp"
+#include "experiments/runner/run_pair.hpp"
 
 namespace agricolmap::experiments {
 
 struct CampaignOptions {
-  std::filesystem::path program;  ///< agricolmap_method
-  std::filesystem::path scratch;  ///< folder for clouds, removed afterwards
-  std::filesystem::path shared;   ///< folder of the real data
-  std::vector<DataSet> datasets;
-  std::vector<Curve> curves;
-  std::vector<std::string> methods;
-  int pairs = 2;
-  int first_seed = 80001;
-  double time_limit = 60.0;  ///< per run [s]
-  int jobs = 1;
+  RunOptions runs;
+  int jobs = 1;                   ///< children at a time; in process 1
+  double stop_after = 0.0;        ///< no pair is begun after this [s]; 0: no end
+  std::filesystem::path scratch;  ///< folder for children's files, removed afterwards
 };
 
-/// Methods that take so long that they come last within a seed.
-bool isSlow(const std::string& method);
-
-/// Whether the method, a rigid one, leaves the whole scale error of the setting, and that alone is
-/// too much: such a run is not made, and counts as a failure.
-bool cannotBeRight(const std::string& method, const Cell& cell);
-
-/// Whether setting number `next` of the curve is past hope: the method failed on all pairs of the
-/// data set at the three settings before it, and on all pairs of data sets of its kind there, six
-/// or more.
-bool hopeless(const std::vector<Row>& rows, const Curve& curve, std::size_t next,
-              const std::string& dataset, const std::string& kind, const std::string& method);
-
-/// Throws Interrupted; what is done by then is in the table.
-void runCampaign(const CampaignOptions& options, RowTable& table);
+/// True when nothing is left, false when it stopped early. Throws Interrupted; what is done by then
+/// is in the table.
+bool runCampaign(const CampaignScope& scope, const CampaignOptions& options, PairMaker& maker,
+                 RowTable& table);
 
 }  // namespace agricolmap::experiments

@@ -1,163 +1,238 @@
+// What is planned, what is skipped, and that an interrupted campaign goes on.
+#include "experiments/runner/campaign.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <cmath>
 
 #include "agricolmap/core/error.hpp"
-#include "runner/campaign.hpp"
-#include "runner/child_process.hpp"
+#include "agricolmap/core/interrupt.hpp"
+#include "agricolmap/io/test_support.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
-class RunnerTest : public ::testing::Test {
+/// Hands its guess back and counts how often it was asked.
+class Echo : public Method {
+ public:
+  explicit Echo(std::string name, Traits traits = {}, std::string options = {})
+      : name_(std::move(name)), traits_(traits), options_(std::move(options)) {}
+  std::string name() const override { return name_; }
+  std::string about() const override { return "its guess"; }
+  Traits traits() const override { return traits_; }
+  std::string optionsText() const override { return options_; }
+  mutable int asked = 0;
+  int interrupt_at = 0;
+
  protected:
-  RunnerTest() {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
+  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
+    if (++asked == interrupt_at) throw Interrupted();
+    outcome.fixed_from_moving = input.guess;
+    outcome.accepted = true;
+    outcome.facts = {{"matches", 12.0}};
   }
-  std::filesystem::path folder_;
+
+ private:
+  std::string name_;
+  Traits traits_;
+  std::string options_;
 };
 
-Cloud squareCloud() {
-  Cloud cloud;
-  cloud.origin = {464000.0, 5257000.0, 500.0};
-  cloud.xyz = {{0.0F, 0.0F, 0.0F}, {4.0F, 0.0F, 0.0F}, {0.0F, 2.0F, 0.0F}, {4.0F, 2.0F, 0.2F}};
-  return cloud;
+Case smallCase(const std::string& name) {
+  Case one;
+  one.name = name;
+  one.dataset = "sugar-beet-20m";
+  one.options = simulate::cropPreset(simulate::Crop::kSugarBeet20m);
+  one.options.field.width = one.options.field.height = 6.0;
+  one.options.ugv.length = 4.0;
+  one.options.ugv.width = 1.2;
+  one.options.geotag = {};
+  one.options.geotag.translation = one.options.geotag.heading_deg = one.options.geotag.scale = 0.0;
+  one.strips_per_field = 2;
+  return one;
 }
 
-Row lostRow(const std::string& dataset, double setting, int seed, bool right = false) {
+class CampaignTest : public ::testing::Test {
+ protected:
+  CampaignTest() {
+    suite_.name = "small";
+    suite_.cases = {smallCase("a")};
+    suite_.pairs = 2;
+    suite_.first_seed = 8;
+  }
+  Echo& add(std::string name, Traits traits = {}, std::string options = {}) {
+    auto made = std::make_unique<Echo>(std::move(name), traits, std::move(options));
+    Echo& echo = *made;
+    methods_.push_back(std::move(made));
+    return echo;
+  }
+  CampaignScope scope() {
+    CampaignScope scope;
+    scope.suites = {suite_};
+    scope.methods = std::move(methods_);
+    scope.source = "abc1234";
+    return scope;
+  }
+  /// The rows after a run.
+  std::vector<Row> run(const CampaignScope& scope, double stop_after = 0.0) {
+    CampaignOptions options;
+    options.stop_after = stop_after;
+    PairMaker maker("/nowhere");
+    RowTable table(folder_ / "rows.csv", scope.source);
+    complete_ = runCampaign(scope, options, maker, table);
+    return table.rows();
+  }
+
+  test::TempDir folder_;
+  Suite suite_;
+  std::vector<std::unique_ptr<Method>> methods_;
+  bool complete_ = false;
+};
+
+TEST_F(CampaignTest, OneRowForEachRun) {
+  add("echo");
+  const std::vector<Row> rows = run(scope());
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_TRUE(complete_);
+  EXPECT_EQ(rows[1].seed, 9);
+  EXPECT_EQ(rows[1].field, 8);
+  EXPECT_EQ(rows[0].status, "accepted");
+  EXPECT_EQ(rows[0].kind, "simulated");
+  EXPECT_EQ(rows[0].matches, 12.0);
+  EXPECT_TRUE(rows[0].in_process);
+  EXPECT_TRUE(std::isfinite(rows[0].rms));
+  EXPECT_TRUE(std::isnan(rows[0].uniqueness));
+}
+
+TEST_F(CampaignTest, GoesOnWhereItWasInterrupted) {
+  Echo& echo = add("echo");
+  echo.interrupt_at = 2;
+  const CampaignScope both = scope();
+  EXPECT_THROW(run(both), Interrupted);
+  EXPECT_EQ(run(both).size(), 2U);
+  EXPECT_EQ(echo.asked, 3) << "the first pair again";
+  EXPECT_EQ(run(both).size(), 2U);
+  EXPECT_EQ(echo.asked, 3) << "nothing is left";
+}
+
+TEST_F(CampaignTest, StopsBetweenPairs) {
+  add("echo");
+  EXPECT_EQ(run(scope(), 1e-9).size(), 0U);
+  EXPECT_FALSE(complete_);
+}
+
+TEST_F(CampaignTest, MorePairsAndMethodsAddUp) {
+  add("echo");
+  run(scope());
+  suite_.pairs = 3;
+  add("echo");
+  Echo& other = add("other");
+  EXPECT_EQ(run(scope()).size(), 6U);
+  EXPECT_EQ(other.asked, 3);
+}
+
+TEST_F(CampaignTest, RowsOfOtherOptionsAreRefused) {
+  add("echo", {}, "cell 0.02");
+  run(scope());
+  add("echo", {}, "cell 0.03");
+  test::expectError<InputError>([&] { run(scope()); },
+                                {"small, a, seed 8, echo", "other options", "another --output"});
+  add("echo", {}, "cell 0.02");
+  suite_.cases[0].options.ugv.length = 3.5;
+  EXPECT_THROW(run(scope()), InputError) << "another pair of the same name";
+}
+
+TEST_F(CampaignTest, MethodsThatNeedAGuessAreNotRunWithoutOne) {
+  suite_.cases.push_back(smallCase("nowhere"));
+  suite_.cases.back().told = PriorUncertainty::none();
+  add("local");
+  add("global", {.needs_guess = false});
+  const std::vector<Row> rows = run(scope());
+  EXPECT_EQ(rows.size(), 6U);
+  for (const Row& row : rows) EXPECT_FALSE(row.method == "local" && row.case_name == "nowhere");
+}
+
+TEST_F(CampaignTest, SlowMethodsComeLastAndMatchlessOnesStayOut) {
+  suite_.matching_only = true;
+  add("slow", {.slow = true, .matches_points = true});
+  add("fast", {.matches_points = true});
+  add("matchless");
+  std::vector<std::string> order;
+  for (const Row& row : run(scope())) order.push_back(row.method);
+  EXPECT_THAT(order, ::testing::ElementsAre("fast", "fast", "slow", "slow"));
+}
+
+TEST_F(CampaignTest, SuitesOfTheSamePairsShareThem) {
+  add("echo");
+  CampaignScope both = scope();
+  both.suites.push_back(both.suites.front());
+  both.suites.back().name = "same pairs";
+  const RowTable table(folder_ / "rows.csv", both.source);
+  const std::vector<Job> jobs = planCampaign(both, table);
+  ASSERT_EQ(jobs.size(), 2U);
+  EXPECT_EQ(jobs[0].chains.size(), 2U);
+}
+
+TEST_F(CampaignTest, AddedErrorsAreThoseOfTheGuess) {
+  suite_.curves = {{.scale = 0.1, .errors = {{0.5, 0.5, 0.0, 0.1}}}};
+  suite_.pairs = 1;
+  add("echo");
+  const std::vector<Row> rows = run(scope());
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].setting, 0.5);
+  EXPECT_EQ(rows[0].guess_scale, 0.1);
+  EXPECT_NEAR(rows[0].e_t, 0.5, 0.02);
+  EXPECT_NEAR(rows[0].e_s, 0.1 * std::sqrt(2.0), 0.02);
+  EXPECT_FALSE(rows[0].right);
+}
+
+Row lostRow(const std::string& case_name, double setting, int seed, bool right = false) {
   Row row;
-  row.dataset = dataset;
+  row.suite = "small";
+  row.case_name = case_name;
   row.kind = "simulated";
-  row.experiment = "translation";
   row.setting = setting;
   row.seed = seed;
-  row.method = "icp-affine";
-  row.status = right ? "accepted" : "failed";
-  row.accepted = row.correct = right;
+  row.method = "echo";
+  row.accepted = row.right = right;
   return row;
 }
 
-TEST_F(RunnerTest, GuessIsWrongByExactlyTheSettingAtTheMiddle) {
-  const Cloud cloud = squareCloud();
-  const Cell cell{"joint", 1.0, 5.0, 0.2, 0.3};
-  const Eigen::Affine3d exact(Eigen::Translation3d(10.0, -20.0, 1.0));
-  const Eigen::Affine3d guess = wrongGuess(cell, 7, cloud, exact);
-  const Eigen::Vector3d middle = cloud.origin + Eigen::Vector3d(2.0, 1.0, 0.05);
-  EXPECT_NEAR((guess * middle - exact * middle).norm(), 5.0, 1e-6);
-  const Eigen::AngleAxisd turn(Eigen::Matrix3d(guess.linear() * exact.linear().transpose()));
-  EXPECT_NEAR(turn.angle(), 0.2, 1e-9);
-  EXPECT_TRUE(wrongGuess(cell, 7, cloud, exact).isApprox(guess, 0.0)) << "keyed, not drawn in turn";
-  EXPECT_FALSE(wrongGuess(cell, 8, cloud, exact).isApprox(guess));
-}
-
-TEST_F(RunnerTest, ScaleErrorKeepsTheMiddleAndFarCoordinates) {
-  Cloud cloud = squareCloud();
-  const Cell cell{"accuracy", 0.3, 0.05, 0.01, 0.3};
-  const Eigen::Affine3d scaled = scaleError(cell, 3, cloud);
-  const Eigen::Vector3d middle = cloud.origin + Eigen::Vector3d(2.0, 1.0, 0.05);
-  EXPECT_NEAR((scaled * middle - middle).norm(), 0.0, 1e-6);
-  EXPECT_NEAR(std::abs(scaled.linear()(0, 0) - 1.0), 0.3, 1e-12);
-  EXPECT_NEAR(std::abs(scaled.linear()(1, 1) - 1.0), 0.3, 1e-12);
-  const Eigen::Vector3d before = cloud.filePoint(1);
-  transformCloud(cloud, scaled);
-  EXPECT_NEAR((cloud.filePoint(1) - scaled * before).norm(), 0.0, 1e-6);
-}
-
-TEST_F(RunnerTest, PriorIsThePapersOrWider) {
-  EXPECT_EQ((Cell{"translation", 5.0, 5.0, 0.0, 0.3}.priorText()), "5,11.5,30");
-  EXPECT_EQ((Cell{"translation", 10.0, 10.0, 0.0, 0.0}.priorText()), "10,11.5,30");
-  EXPECT_EQ((Cell{"heading", 0.4, 0.0, 0.4, 0.0}.priorText()), "5,23,30");
-}
-
-TEST_F(RunnerTest, UnknownNamesListTheKnownOnes) {
-  EXPECT_THROW(curvesOf("rotation", false), UsageError);
-  try {
-    chooseDataSets({"barley"}, Views::kDevelop, false);
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("winter-wheat"));
-  }
-}
-
-TEST_F(RunnerTest, FinalRunHasSettingsThatDevelopmentNeverSaw) {
-  const auto develop = viewRanges(Views::kDevelop, PairSource::kSimulated);
-  const auto final = viewRanges(Views::kFinal, PairSource::kSimulated);
-  ASSERT_EQ(develop.size(), final.size());
-  for (std::size_t i = 0; i < develop.size(); ++i) {
-    ASSERT_EQ(develop[i].path, final[i].path);
-    for (const double value : develop[i].values) {
-      EXPECT_THAT(final[i].values, ::testing::Not(::testing::Contains(value))) << final[i].path;
-    }
-  }
-  for (const DataSet& set : allDataSets(Views::kFinal, false)) {
-    EXPECT_NO_THROW(set.pairs.optionsFor(3)) << set.name << ": a path that no option has";
-  }
-}
-
-TEST_F(RunnerTest, RowsComeBackAndOtherVersionsAreRefused) {
-  const std::filesystem::path path = folder_ / "rows.csv";
-  Row row = lostRow("soybean", 0.25, 80001);
-  row.errors.rms = 0.125;
-  row.run_s = 1.5;
-  row.note = "no plants, at all\nhere";
-  {
-    RowTable table(path, "version 1");
-    table.append(row);
-    EXPECT_THROW(RowTable(path, "version 1"), OutputError) << "in use";
-  }
-  std::ofstream(path, std::ios::app) << "soybean,simulated,trans";  // cut off by a crash
-  {
-    const RowTable table(path, "version 1");
-    ASSERT_EQ(table.rows().size(), 1U);
-    const Row* found = table.find(row.key());
-    ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->errors.rms, 0.125);
-    EXPECT_EQ(found->run_s, 1.5);
-    EXPECT_EQ(found->note, "no plants; at all here");
-    EXPECT_TRUE(std::isnan(found->first.matches));
-  }
-  EXPECT_THROW(RowTable(path, "version 2"), InputError);
-}
-
-TEST_F(RunnerTest, GivesUpOnlyAfterThreeLostSettingsAndSixLostRuns) {
-  const Curve curve = curvesOf("translation", false).front();
+TEST_F(CampaignTest, GivesUpOnlyAfterThreeLostSettingsAndSixLostRuns) {
+  const std::vector<AddedError> errors = {
+      {0.25, 0.25, 0.0, 0.0}, {0.5, 0.5, 0.0, 0.0}, {1.0, 1.0, 0.0, 0.0}, {2.0, 2.0, 0.0, 0.0}};
+  const Echo echo("echo");
+  const Case other = smallCase("b");
+  Chain chain{&suite_, &suite_.cases.front(), {}, true, &echo};
+  for (const AddedError& error : errors) chain.errors.push_back(&error);
+  Chain elsewhere = chain;
+  elsewhere.chosen = &other;
   std::vector<Row> rows;
-  for (const double setting : {0.25, 0.5, 1.0}) rows.push_back(lostRow("soybean", setting, 1));
-  const auto lost = [&](const std::string& dataset) {
-    return hopeless(rows, curve, 6, dataset, "simulated", "icp-affine");
-  };
-  EXPECT_FALSE(lost("soybean")) << "three runs are an anecdote";
-  for (const double setting : {0.25, 0.5, 1.0}) rows.push_back(lostRow("soybean", setting, 2));
-  EXPECT_TRUE(lost("soybean"));
-  EXPECT_FALSE(lost("winter-wheat")) << "never tried there";
-  rows.push_back(lostRow("sugar-beet-10m", 1.0, 1, true));
-  EXPECT_FALSE(lost("soybean"));
+  for (const double setting : {0.25, 0.5, 1.0}) rows.push_back(lostRow("a", setting, 1));
+  EXPECT_FALSE(hopeless(rows, chain, 3)) << "three runs are an anecdote";
+  for (const double setting : {0.25, 0.5, 1.0}) rows.push_back(lostRow("a", setting, 2));
+  EXPECT_TRUE(hopeless(rows, chain, 3));
+  EXPECT_FALSE(hopeless(rows, elsewhere, 3)) << "never tried there";
+  rows.push_back(lostRow("b", 1.0, 1, true));
+  EXPECT_FALSE(hopeless(rows, chain, 3));
+  chain.rising = false;
+  rows.pop_back();
+  EXPECT_FALSE(hopeless(rows, chain, 3)) << "no order, no conclusion";
 }
 
-TEST_F(RunnerTest, RigidMethodsAreNotTriedWhereTheScaleErrorAloneIsTooMuch) {
-  EXPECT_FALSE(cannotBeRight("go-icp", {"translation", 1.0, 1.0, 0.0, 0.0}));
-  EXPECT_TRUE(cannotBeRight("go-icp", {"accuracy", 0.05, 0.05, 0.01, 0.05}));
-  EXPECT_TRUE(cannotBeRight("fpfh-gicp", {"joint", 1.0, 5.0, 0.2, 0.3}));
-  EXPECT_FALSE(cannotBeRight("go-icp-oracle-scale", {"accuracy", 0.05, 0.05, 0.01, 0.05}));
-  EXPECT_FALSE(cannotBeRight("icp-affine", {"accuracy", 0.05, 0.05, 0.01, 0.05}));
-}
-
-TEST_F(RunnerTest, ChildEndsAtItsLimitOrByItself) {
-  const ChildResult slow = runChild({"/bin/sleep", "20"}, 0.2, folder_ / "log");
-  EXPECT_TRUE(slow.timed_out);
-  EXPECT_LT(slow.wall_s, 5.0);
-  const ChildResult quick = runChild({"/bin/sh", "-c", "echo so; exit 3"}, 10.0, folder_ / "log");
-  EXPECT_FALSE(quick.timed_out);
-  EXPECT_EQ(quick.exit_code, 3);
-  std::string word;
-  std::ifstream(folder_ / "log") >> word;
-  EXPECT_EQ(word, "so");
-  EXPECT_THROW(runChild({"/no/such/program"}, 1.0, folder_ / "log"), OutputError);
+TEST_F(CampaignTest, RigidMethodsAreNotTriedWhereTheScaleErrorAloneIsTooMuch) {
+  const Traits rigid = {.rigid = true};
+  EXPECT_FALSE(cannotBeRight(rigid, {1.0, 1.0, 0.0, 0.0}));
+  EXPECT_TRUE(cannotBeRight(rigid, {0.05, 0.05, 0.01, 0.05}));
+  EXPECT_FALSE(cannotBeRight({}, {0.05, 0.05, 0.01, 0.05}));
+  suite_.curves = {{.scale = 0.1, .errors = {{0.5, 0.5, 0.0, 0.1}}}};
+  Echo& echo = add("echo", rigid);
+  const std::vector<Row> rows = run(scope());
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].status, "skipped");
+  EXPECT_EQ(rows[0].message, "rigid");
+  EXPECT_EQ(echo.asked, 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "runner/child_process.hpp"
+#include "experiments/runner/child_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "runner/progress.hpp"
+#include "experiments/runner/progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,25 +8,17 @@
 
 namespace agricolmap::experiments {
 
-Progress::Progress(const CampaignOptions& options, const RowTable& table)
-    : jobs_(options.jobs), terminal_(::isatty(STDERR_FILENO) != 0) {
-  for (const Row& row : table.rows()) add(row);
-  for (const DataSet& data : options.datasets) {
-    for (const Curve& curve : options.curves) {
-      for (const Cell& cell : curve.cells) {
-        for (const std::string& method : options.methods) {
-          if (!takesPart(method, cell.experiment)) continue;
-          for (int i = 0; i < options.pairs; ++i) {
-            Row row;
-            row.dataset = data.name;
-            row.experiment = cell.experiment;
-            row.scale = cell.scale;
-            row.setting = cell.setting;
-            row.seed = options.first_seed + i;
-            row.method = method;
-            if (table.find(row.key()) == nullptr) ++left_[method];
-          }
-        }
+Progress::Progress(const CampaignScope& scope, const std::vector<Job>& jobs, int at_a_time,
+                   const RowTable& table)
+    : at_a_time_(at_a_time), terminal_(::isatty(STDERR_FILENO) != 0) {
+  if (!terminal_) return;
+  for (const Row& row : table.rows()) count(row);
+  pairs_.left = static_cast<int>(jobs.size());
+  for (const Job& job : jobs) {
+    for (const Chain& chain : job.chains) {
+      for (const AddedError* error : chain.errors) {
+        const Row planned = rowFor(scope, chain, error, job.seed);
+        if (table.find(planned.key()) == nullptr) ++runs_[planned.method].left;
       }
     }
   }
@@ -36,43 +28,44 @@ Progress::~Progress() {
   if (terminal_) fmt::print(stderr, "\r\033[K");
 }
 
-void Progress::add(const Row& row) {
-  Sum& sum = sums_[row.method];
-  ++sum.runs;
-  if (std::isfinite(row.wall_s)) sum.seconds += row.wall_s;
+void Progress::count(const Row& row) {
+  Work& work = runs_[row.method];
+  ++work.done;
+  if (std::isfinite(row.wall_s)) work.seconds += row.wall_s;
+  if (!std::isfinite(row.make_s)) return;
+  ++pairs_.done;
+  pairs_.seconds += row.make_s;
 }
 
-void Progress::now(const std::string& dataset, int seed) {
-  place_ = fmt::format("{} seed {}", dataset, seed);
+void Progress::now(const std::string& case_name, int seed) {
+  place_ = fmt::format("{} seed {}", case_name, seed);
   print();
+  --pairs_.left;
 }
 
 void Progress::done(const Row& row) {
-  add(row);
-  --left_[row.method];
+  count(row);
+  --runs_[row.method].left;
   print();
 }
 
 std::string Progress::timeLeft() const {
-  double seconds = 0.0;
-  for (const auto& [method, runs] : left_) {
-    if (runs == 0) continue;
-    const auto sum = sums_.find(method);
-    if (sum == sums_.end()) return "time left unknown yet";
-    seconds += runs * sum->second.seconds / sum->second.runs / jobs_;
+  double seconds =
+      pairs_.done > 0 ? pairs_.left * pairs_.seconds / static_cast<double>(pairs_.done) : 0.0;
+  for (const auto& [method, work] : runs_) {
+    if (work.left == 0) continue;
+    if (work.done == 0) return "time left unknown yet";
+    seconds += work.left * work.seconds / work.done / at_a_time_;
   }
   return seconds < 5400.0 ? fmt::format("{:.0f} min left", seconds / 60.0)
                           : fmt::format("{:.1f} h left", seconds / 3600.0);
 }
 
-void Progress::print() {
-  const double now = watch_.seconds();
-  if (!terminal_ && now - last_ < 30.0) return;
-  last_ = now;
-  int runs = 0;
-  for (const auto& [method, count] : left_) runs += count;
-  fmt::print(stderr, "{}{} runs, {}; now {}{}", terminal_ ? "\r\033[K" : "", runs, timeLeft(),
-             place_, terminal_ ? "" : "\n");
+void Progress::print() const {
+  if (!terminal_) return;
+  int left = 0;
+  for (const auto& [method, work] : runs_) left += work.left;
+  fmt::print(stderr, "\r\033[K{} runs, {}; now {}", left, timeLeft(), place_);
   std::fflush(stderr);
 }
 

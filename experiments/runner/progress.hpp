@@ -1,42 +1,43 @@
-// How far the comparison is, on stderr.
+// How far a campaign is, on a terminal's stderr.
 #pragma once
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "agricolmap/core/stopwatch.hpp"
-#include "runner/campaign.hpp"
+#include "experiments/runner/plan.hpp"
 
 namespace agricolmap::experiments {
 
-/// In place on a terminal, else a line every half minute. Not for several threads at once.
+/// One line, in place; nothing where stderr is no terminal. Not for several threads at once.
 class Progress {
  public:
-  Progress(const CampaignOptions& options, const RowTable& table);
+  Progress(const CampaignScope& scope, const std::vector<Job>& jobs, int at_a_time,
+           const RowTable& table);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   /// What is being worked on.
-  void now(const std::string& dataset, int seed);
+  void now(const std::string& case_name, int seed);
   void done(const Row& row);
 
  private:
-  void add(const Row& row);
-  void print();
-  /// From each method's mean time over all rows so far, those of earlier runs included.
+  /// Mean time of what has been done, earlier runs included, and what is left.
+  struct Work {
+    double seconds = 0.0;
+    int done = 0;
+    int left = 0;
+  };
+  void count(const Row& row);
+  void print() const;
   std::string timeLeft() const;
 
-  struct Sum {
-    double seconds = 0.0;
-    int runs = 0;
-  };
-  std::map<std::string, Sum> sums_;  ///< per method
-  std::map<std::string, int> left_;  ///< runs per method
-  int jobs_;
+  std::map<std::string, Work> runs_;  ///< by method
+  Work pairs_;                        ///< making them
+  int at_a_time_;
   std::string place_;
-  Stopwatch watch_;
-  double last_ = -1e9;
   bool terminal_;
 };
 

@@ -1,4 +1,4 @@
-#include "runner/rows.hpp"
+#include "experiments/runner/row.hpp"
 
 #include <fmt/format.h>
 
@@ -10,49 +10,54 @@
 namespace agricolmap::experiments {
 namespace {
 
-constexpr std::string_view kProgram = "agricolmap_compare";
-constexpr std::string_view kHeader =
-    "dataset,kind,experiment,scale_error,setting,seed,method,status,accepted,correct,rms_m,"
-    "rms_horizontal_m,rms_to_best_affine_m,e_t_m,e_r_rad,e_s,wall_s,run_s,cpu_s,peak_mib,idle_mib,"
-    "matches,right,coherent,rematches,rematches_right,rematches_coherent,stages,note";
-constexpr std::size_t kColumns = 29;
-
-constexpr double evaluate::RegistrationErrors::*kErrors[] = {
-    &evaluate::RegistrationErrors::rms,
-    &evaluate::RegistrationErrors::rms_horizontal,
-    &evaluate::RegistrationErrors::rms_to_best_affine,
-    &evaluate::RegistrationErrors::translation,
-    &evaluate::RegistrationErrors::rotation,
-    &evaluate::RegistrationErrors::scale};
-constexpr double Row::*kNumbers[] = {&Row::wall_s, &Row::run_s, &Row::cpu_s, &Row::peak_mib,
-                                     &Row::idle_mib};
-constexpr MatchCounts Row::*kMatchings[] = {&Row::first, &Row::last};
-constexpr double MatchCounts::*kCounts[] = {&MatchCounts::matches, &MatchCounts::right,
-                                            &MatchCounts::coherent};
-
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.7g}", value) : std::string();
-}
+template <typename... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
+};
+template <typename... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
 /// Without what parts fields and lines.
 std::string plain(std::string text) {
   for (char& c : text) {
     if (c == ',') c = ';';
+    if (c == '"') c = '\'';
     if (c == '\n' || c == '\r') c = ' ';
   }
   return text;
 }
 
-std::string toLine(const Row& row) {
-  std::string line = fmt::format("{},{},{},{:.4g},{:.4g},{},{},{},{:d},{:d}", row.dataset, row.kind,
-                                 row.experiment, row.scale, row.setting, row.seed, row.method,
-                                 row.status, row.accepted, row.correct);
-  for (const auto field : kErrors) line += fmt::format(",{}", number(row.errors.*field));
-  for (const auto field : kNumbers) line += fmt::format(",{}", number(row.*field));
-  for (const auto matching : kMatchings) {
-    for (const auto field : kCounts) line += fmt::format(",{}", number(row.*matching.*field));
-  }
-  return line + fmt::format(",{},{}\n", plain(row.stages), plain(row.note));
+std::string fieldOf(const Row& row, const Column& column) {
+  return std::visit(
+      Overloaded{[&](std::string Row::*text) { return plain(row.*text); },
+                 [&](int Row::*whole) { return fmt::format("{}", row.*whole); },
+                 [&](bool Row::*flag) { return std::string(row.*flag ? "1" : "0"); },
+                 [&](double Row::*number) {
+                   return std::isfinite(row.*number) ? fmt::format("{:.9g}", row.*number) : "";
+                 }},
+      column.member);
+}
+
+double numberFrom(std::string_view field, const std::string& place) {
+  if (field.empty()) return kNotKnown;
+  const auto value = io::parseNumber(field);
+  if (!value) throw InputError(fmt::format("{}: '{}' is no number", place, field));
+  return *value;
+}
+
+std::int64_t wholeFrom(std::string_view field, const std::string& place) {
+  const auto value = io::parseInteger(field);
+  if (!value) throw InputError(fmt::format("{}: '{}' is no whole number", place, field));
+  return *value;
+}
+
+void setField(Row& row, const Column& column, std::string_view field, const std::string& place) {
+  std::visit(
+      Overloaded{[&](std::string Row::*text) { row.*text = std::string(field); },
+                 [&](int Row::*whole) { row.*whole = static_cast<int>(wholeFrom(field, place)); },
+                 [&](bool Row::*flag) { row.*flag = wholeFrom(field, place) != 0; },
+                 [&](double Row::*number) { row.*number = numberFrom(field, place); }},
+      column.member);
 }
 
 std::vector<std::string_view> splitFields(std::string_view line) {
@@ -65,79 +70,112 @@ std::vector<std::string_view> splitFields(std::string_view line) {
   }
 }
 
-double real(std::string_view field, const std::string& place) {
-  if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto value = io::parseNumber(field);
-  if (!value) throw InputError(fmt::format("{}: '{}' is no number", place, field));
-  return *value;
-}
-
-Row parseLine(std::string_view line, const std::string& place) {
-  const std::vector<std::string_view> fields = splitFields(line);
-  if (fields.size() != kColumns) {
-    throw InputError(fmt::format("{}: has {} fields, not {}; the file is damaged", place,
-                                 fields.size(), kColumns));
-  }
-  Row row;
-  std::size_t at = 0;
-  const auto text = [&] { return std::string(fields[at++]); };
-  const auto value = [&] { return real(fields[at++], place); };
-  row.dataset = text();
-  row.kind = text();
-  row.experiment = text();
-  row.scale = value();
-  row.setting = value();
-  row.seed = static_cast<int>(value());
-  row.method = text();
-  row.status = text();
-  row.accepted = value() == 1.0;
-  row.correct = value() == 1.0;
-  for (const auto field : kErrors) row.errors.*field = value();
-  for (const auto field : kNumbers) row.*field = value();
-  for (const auto matching : kMatchings) {
-    for (const auto field : kCounts) row.*matching.*field = value();
-  }
-  row.stages = text();
-  row.note = text();
-  return row;
-}
-
-std::vector<Row> parseRows(const std::vector<std::string>& lines,
-                           const std::filesystem::path& path) {
-  std::vector<Row> rows;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    rows.push_back(parseLine(lines[i], campaign::rowPlace(path, i)));
-  }
-  return rows;
-}
-
 }  // namespace
 
+const std::vector<Column>& columns() {
+  // In the order of the members.
+  static const std::vector<Column> all = {{"suite", &Row::suite},
+                                          {"settings", &Row::settings},
+                                          {"case", &Row::case_name},
+                                          {"dataset", &Row::dataset},
+                                          {"kind", &Row::kind},
+                                          {"seed", &Row::seed},
+                                          {"setting", &Row::setting},
+                                          {"guess_scale", &Row::guess_scale},
+                                          {"field", &Row::field},
+                                          {"negative", &Row::negative},
+                                          {"guess_translation", &Row::guess_translation},
+                                          {"guess_heading", &Row::guess_heading},
+                                          {"told", &Row::told},
+                                          {"method", &Row::method},
+                                          {"threads", &Row::threads},
+                                          {"in_process", &Row::in_process},
+                                          {"status", &Row::status},
+                                          {"accepted", &Row::accepted},
+                                          {"right", &Row::right},
+                                          {"right_in_plane", &Row::right_in_plane},
+                                          {"rms", &Row::rms},
+                                          {"rms_horizontal", &Row::rms_horizontal},
+                                          {"rms_vertical", &Row::rms_vertical},
+                                          {"worst", &Row::worst},
+                                          {"rms_to_best_affine", &Row::rms_to_best_affine},
+                                          {"e_t", &Row::e_t},
+                                          {"e_r", &Row::e_r},
+                                          {"e_s", &Row::e_s},
+                                          {"probability", &Row::probability},
+                                          {"plane_probability", &Row::plane_probability},
+                                          {"uniqueness", &Row::uniqueness},
+                                          {"significance", &Row::significance},
+                                          {"agreeing", &Row::agreeing},
+                                          {"blocks", &Row::blocks},
+                                          {"expected_rms", &Row::expected_rms},
+                                          {"local_rms", &Row::local_rms},
+                                          {"height_deviation", &Row::height_deviation},
+                                          {"overlap", &Row::overlap},
+                                          {"block_rms", &Row::block_rms},
+                                          {"correlation", &Row::correlation},
+                                          {"attempts", &Row::attempts},
+                                          {"pose_mahalanobis2", &Row::pose_mahalanobis2},
+                                          {"centre_mahalanobis2", &Row::centre_mahalanobis2},
+                                          {"height_mahalanobis2", &Row::height_mahalanobis2},
+                                          {"matches", &Row::matches},
+                                          {"matches_right", &Row::matches_right},
+                                          {"matches_coherent", &Row::matches_coherent},
+                                          {"rematches", &Row::rematches},
+                                          {"rematches_right", &Row::rematches_right},
+                                          {"rematches_coherent", &Row::rematches_coherent},
+                                          {"fixed_points", &Row::fixed_points},
+                                          {"moving_points", &Row::moving_points},
+                                          {"make_s", &Row::make_s},
+                                          {"wall_s", &Row::wall_s},
+                                          {"run_s", &Row::run_s},
+                                          {"cpu_s", &Row::cpu_s},
+                                          {"peak_mib", &Row::peak_mib},
+                                          {"idle_mib", &Row::idle_mib},
+                                          {"stages", &Row::stages},
+                                          {"message", &Row::message},
+                                          {"source", &Row::source},
+                                          {"options", &Row::options}};
+  return all;
+}
+
 std::string Row::key() const {
-  return fmt::format("{}|{}|{:.4g}|{:.4g}|{}|{}", dataset, experiment, scale, setting, seed,
-                     method);
+  return fmt::format("{}|{}|{}|{}|{:.4g}|{:.4g}|{}", suite, settings, case_name, seed, setting,
+                     guess_scale, method);
 }
 
-std::vector<Row> readRows(const std::filesystem::path& path, std::string& identity) {
-  campaign::RowLines lines = campaign::readRowFile(path, kHeader, kProgram);
-  identity = std::move(lines.identity);
-  return parseRows(lines.rows, path);
+double Row::*numberColumn(std::string_view name) {
+  for (const Column& column : columns()) {
+    if (column.name != name) continue;
+    if (const auto* number = std::get_if<double Row::*>(&column.member)) return *number;
+  }
+  throw Error(ExitCode::kInternal, fmt::format("no number of a row is called '{}'", name));
 }
 
-RowTable::RowTable(const std::filesystem::path& path, std::string_view identity)
-    : file_(path, kHeader, kProgram, identity), rows_(parseRows(file_.rows(), path)) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) places_[rows_[i].key()] = i;
+std::string csvHeader() {
+  std::string line;
+  for (const Column& column : columns()) {
+    line += fmt::format("{}{}", line.empty() ? "" : ",", column.name);
+  }
+  return line;
 }
 
-const Row* RowTable::find(const std::string& key) const {
-  const auto at = places_.find(key);
-  return at == places_.end() ? nullptr : &rows_[at->second];
+std::string toCsv(const Row& row) {
+  std::string line;
+  for (const Column& column : columns()) line += fieldOf(row, column) + ',';
+  line.back() = '\n';
+  return line;
 }
 
-void RowTable::append(const Row& row) {
-  file_.append(toLine(row));
-  places_[row.key()] = rows_.size();
-  rows_.push_back(row);
+Row rowFromCsv(std::string_view line, const std::string& place) {
+  const std::vector<std::string_view> fields = splitFields(line);
+  if (fields.size() != columns().size()) {
+    throw InputError(fmt::format("{}: has {} fields, not {}; the file is damaged", place,
+                                 fields.size(), columns().size()));
+  }
+  Row row;
+  for (std::size_t i = 0; i < fields.size(); ++i) setField(row, columns()[i], fields[i], place);
+  return row;
 }
 
 }  // namespace agricolmap::experiments

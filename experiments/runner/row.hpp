@@ -36,9 +36,9 @@ struct Row {
   bool negative = false;     ///< the clouds have nothing in common: no answer can be right
   double guess_translation = kNotKnown;  ///< how wrong the guess is; for cases with `uniform`
                                          ///< guesses (case's own options) at most, else exactly [m]
-  double guess_heading = kNotKnown;  ///< likewise [rad]
+  double guess_heading = kNotKnown;      ///< likewise [rad]
   std::string told;    ///< how wrong the method is told that it may be: `T_M;HEADING_DEG;SCALE_%`,
-                       ///< `anywhere`, either with `;unit` where the file's unit is unknown
+                       ///< `none`, either with `;unit` where the file's unit is unknown
   std::string method;  ///< preset, preset with options (`default:grid.cell=0.03`), or peer
   int threads = 0;     ///< that it might use
   bool in_process =
@@ -121,6 +121,8 @@ struct Column {
   std::variant<std::string Row::*, int Row::*, bool Row::*, double Row::*> member;
 };
 const std::vector<Column>& columns();
+/// The member of a number's column. Throws Error for a name that is none's.
+double Row::*numberColumn(std::string_view name);
 
 std::string csvHeader();
 /// With its line end.

@@ -1,4 +1,4 @@
-#include "row_file.hpp"
+#include "experiments/runner/row_table.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -24,93 +24,84 @@ std::string slurp(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// `text` up to its last line end.
-std::string_view wholeLines(std::string_view text) {
-  return text.substr(0, text.find_last_of('\n') + 1);
-}
-
 std::string_view takeLine(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  text.remove_prefix(end + 1);
   return line;
 }
 
-/// `text` consists of whole lines.
-RowLines split(std::string_view text, const std::filesystem::path& path, std::string_view header,
-               std::string_view program) {
-  const std::string_view first = takeLine(text);
-  if (!first.starts_with("# ") || takeLine(text) != header) {
-    throw InputError(
-        fmt::format("{}: was not written by this version of {}; choose another --output",
-                    path.string(), program));
-  }
-  RowLines lines;
-  lines.identity = std::string(first.substr(2));
-  while (!text.empty()) lines.rows.emplace_back(takeLine(text));
-  return lines;
+[[noreturn]] void cannotWrite(const std::filesystem::path& path) {
+  throw OutputError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
 }
 
 }  // namespace
 
-RowLines readRowFile(const std::filesystem::path& path, std::string_view header,
-                     std::string_view program) {
-  const std::string text = slurp(path);
-  return split(wholeLines(text), path, header, program);
-}
-
-std::string rowPlace(const std::filesystem::path& path, std::size_t row) {
-  return fmt::format("{}:{}", path.string(), row + 3);
-}
-
-RowFile::RowFile(std::filesystem::path path, std::string_view header, std::string_view program,
-                 std::string_view identity)
-    : path_(std::move(path)) {
+RowTable::RowTable(std::filesystem::path path, std::string_view source) : path_(std::move(path)) {
   fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (fd_ < 0) {
-    throw OutputError(
-        fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
-  }
+  if (fd_ < 0) cannotWrite(path_);
   try {
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-      throw OutputError(fmt::format("{}: another {} is writing it; choose another --output or wait",
-                                    path_.string(), program));
-    }
-    const std::string text = slurp(path_);
-    const std::string_view whole = wholeLines(text);
-    if (whole.size() < text.size() && ::ftruncate(fd_, static_cast<off_t>(whole.size())) != 0) {
-      throw OutputError(
-          fmt::format("{}: cannot be repaired: {}", path_.string(), std::strerror(errno)));
-    }
-    if (whole.empty()) {
-      append(fmt::format("# {}\n{}\n", identity, header));
-      return;
-    }
-    RowLines there = split(whole, path_, header, program);
-    if (there.identity != identity) {
-      throw InputError(
-          fmt::format("{}: its rows come from other code or options, and must not be mixed with "
-                      "new ones\n  there: {}\n  now:   {}\nchoose another --output",
-                      path_.string(), there.identity, identity));
-    }
-    rows_ = std::move(there.rows);
+    load(source);
   } catch (...) {
     ::close(fd_);
     throw;
   }
 }
 
-RowFile::~RowFile() { ::close(fd_); }
+RowTable::~RowTable() { ::close(fd_); }
 
-void RowFile::append(std::string_view line) {
-  while (!line.empty()) {
-    const ssize_t written = ::write(fd_, line.data(), line.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      throw OutputError(
-          fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+void RowTable::load(std::string_view source) {
+  if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+    throw OutputError(
+        fmt::format("{}: another process is writing it; choose another --output or "
+                    "wait",
+                    path_.string()));
+  }
+  const std::string text = slurp(path_);
+  std::string_view whole = std::string_view(text).substr(0, text.find_last_of('\n') + 1);
+  if (whole.size() < text.size() && ::ftruncate(fd_, static_cast<off_t>(whole.size())) != 0) {
+    cannotWrite(path_);
+  }
+  if (whole.empty()) {
+    write(csvHeader() + '\n');
+    return;
+  }
+  if (takeLine(whole) != csvHeader()) {
+    throw InputError(
+        fmt::format("{}: has other columns than this version writes; choose another "
+                    "--output",
+                    path_.string()));
+  }
+  for (int line = 2; !whole.empty(); ++line) {
+    Row row = rowFromCsv(takeLine(whole), fmt::format("{}:{}", path_.string(), line));
+    if (row.source != source) {
+      throw InputError(
+          fmt::format("{}:{}: comes from other sources ({}) than this program ({}), and must not "
+                      "be mixed with new rows; choose another --output",
+                      path_.string(), line, row.source, source));
     }
-    line.remove_prefix(static_cast<std::size_t>(written));
+    places_[row.key()] = rows_.size();
+    rows_.push_back(std::move(row));
+  }
+}
+
+const Row* RowTable::find(const std::string& key) const {
+  const auto at = places_.find(key);
+  return at == places_.end() ? nullptr : &rows_[at->second];
+}
+
+void RowTable::append(const Row& row) {
+  write(toCsv(row));
+  places_[row.key()] = rows_.size();
+  rows_.push_back(row);
+}
+
+void RowTable::write(std::string_view text) const {
+  while (!text.empty()) {
+    const ssize_t written = ::write(fd_, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) cannotWrite(path_);
+    text.remove_prefix(static_cast<std::size_t>(written));
   }
 }
 

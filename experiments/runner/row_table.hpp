@@ -1,48 +1,42 @@
-// A table of rows that several runs of a program add to: whole lines only, one writer at a time,
-// all rows of one program and one set of options.
+// rows.csv: a table that several runs of the program add to. Whole lines only, one writer at a
+// time, all rows of one source.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "experiments/runner/row.hpp"
+
 namespace agricolmap::experiments {
 
-/// What stands in the file: `# identity`, the header, then rows.
-struct RowLines {
-  std::string identity;
-  std::vector<std::string> rows;
-};
-
-/// A last line that a crash cut off is left out. Throws InputError for a file that cannot be read
-/// or has another header; `program` is who is said to have written it.
-RowLines readRowFile(const std::filesystem::path& path, std::string_view header,
-                     std::string_view program);
-/// Where a row stands, for messages: `path:line`.
-std::string rowPlace(const std::filesystem::path& path, std::size_t row);
-
-class RowFile {
+class RowTable {
  public:
-  /// Opens or makes the file and locks it. `identity` is one line that says what program and
-  /// options the rows come from; throws InputError when the file has another, OutputError when it
-  /// cannot be written or somebody else writes it. A last line that a crash cut off is removed.
-  RowFile(std::filesystem::path path, std::string_view header, std::string_view program,
-          std::string_view identity);
-  ~RowFile();
-  RowFile(const RowFile&) = delete;
-  RowFile& operator=(const RowFile&) = delete;
+  /// Opens or makes the file and locks it. A last line that a crash cut off is removed. Throws
+  /// InputError when it is no table of this version or has rows of another source, OutputError when
+  /// it cannot be written or somebody else writes it.
+  RowTable(std::filesystem::path path, std::string_view source);
+  ~RowTable();
+  RowTable(const RowTable&) = delete;
+  RowTable& operator=(const RowTable&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// The rows that were there when the file was opened.
-  const std::vector<std::string>& rows() const { return rows_; }
-  /// Adds a line, with its line end, and hands it to the system at once. Throws OutputError.
-  void append(std::string_view line);
+  const std::vector<Row>& rows() const { return rows_; }
+  /// The row of the same name (Row::key); nullptr when there is none yet.
+  const Row* find(const std::string& key) const;
+  /// Adds a row and hands it to the system at once. Throws OutputError.
+  void append(const Row& row);
 
  private:
+  void load(std::string_view source);
+  void write(std::string_view text) const;
+
   std::filesystem::path path_;
   int fd_ = -1;
-  std::vector<std::string> rows_;
+  std::vector<Row> rows_;
+  std::map<std::string, std::size_t> places_;
 };
 
 }  // namespace agricolmap::experiments

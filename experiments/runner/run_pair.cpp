@@ -1,16 +1,15 @@
-#include "runner/run_method.hpp"
+#include "experiments/runner/run_pair.hpp"
 
 #include <fmt/format.h>
 
+#include <ctime>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
-#include "runner/child_process.hpp"
+#include "experiments/runner/child_process.hpp"
 
 namespace agricolmap::experiments {
 namespace {
@@ -18,6 +17,7 @@ namespace {
 // The share of the time limit after which methods that can stop are asked to: the rest is for
 // reading the clouds, which the limit covers, too.
 constexpr double kSoftShare = 0.85;
+const std::string kUnscaled = "0";
 
 std::string firstLine(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -26,111 +26,170 @@ std::string firstLine(const std::filesystem::path& path) {
   return line;
 }
 
-Eigen::Affine3d matrixOf(const nlohmann::json& rows) {
-  Eigen::Affine3d matrix;
-  for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) {
-      matrix.matrix()(r, c) =
-          rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c)).get<double>();
-    }
+std::string stageText(const StageTimes& times) {
+  std::string text;
+  for (const auto& [stage, seconds] : times.stages()) {
+    text += fmt::format("{}{}={:.4f}", text.empty() ? "" : ";", stage, seconds);
   }
-  return matrix;
+  return text;
 }
 
-evaluate::RegistrationErrors noErrors() {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  evaluate::RegistrationErrors errors;
-  errors.rms = errors.rms_horizontal = errors.rms_vertical = errors.worst = nan;
-  errors.rms_to_best_affine = errors.translation = errors.rotation = errors.scale = nan;
-  return errors;
-}
+/// Of all threads of this process so far [s].
+double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-void fillFromJson(const nlohmann::json& json, const PairFiles::Moving& moving, Row& row) {
-  row.status = json.at("status").get<std::string>();
-  row.note = json.at("why").get<std::string>();
-  row.accepted = row.status == "accepted";
-  row.run_s = json.at("run_s").get<double>();
-  row.peak_mib = json.at("peak_memory_mib").get<double>();
-  row.idle_mib = json.at("idle_memory_mib").get<double>();
-  for (const auto& [stage, seconds] : json.at("stages_s").items()) {
-    row.stages +=
-        fmt::format("{}{}={:.4f}", row.stages.empty() ? "" : ";", stage, seconds.get<double>());
-  }
-  for (const auto& [name, counts] : {std::pair{"matches", &row.first}, {"rematches", &row.last}}) {
-    if (!json.contains(name)) continue;
-    counts->matches = json[name].at("count").get<double>();
-    counts->coherent = json[name].at("inliers").get<double>();
-    counts->right = json[name].at("right").get<double>();
-  }
-  if (json.at("fixed_from_moving").is_null()) return;
-  row.errors = evaluate::evaluateTransform(matrixOf(json.at("fixed_from_moving")), moving.truth,
-                                           moving.cloud);
-  row.correct = row.errors.within({});
+void setErrors(const evaluate::RegistrationErrors& errors, Row& row) {
+  row.rms = errors.rms;
+  row.rms_horizontal = errors.rms_horizontal;
+  row.rms_vertical = errors.rms_vertical;
+  row.worst = errors.worst;
+  row.rms_to_best_affine = errors.rms_to_best_affine;
+  row.e_t = errors.translation;
+  row.e_r = errors.rotation;
+  row.e_s = errors.scale;
 }
 
 }  // namespace
 
-PairFiles::PairFiles(std::filesystem::path folder, Pair pair, int seed)
-    : folder_(std::move(folder)), pair_(std::move(pair)), seed_(seed) {
-  io::writePly(fixedFile(), *pair_.fixed);
+PairRuns::PairRuns(Pair pair, int seed, RunOptions options, std::filesystem::path folder)
+    : fixed_(std::move(pair.fixed)),
+      guess_(pair.guess),
+      overlaps_(pair.overlaps),
+      seed_(seed),
+      options_(std::move(options)),
+      folder_(std::move(folder)) {
+  Moving& unscaled = moving_[kUnscaled];
+  unscaled.cloud = std::move(pair.moving);
+  unscaled.truth = std::move(pair.truth);
+  unscaled_ = &unscaled;
+  if (options_.in_process) return;
+  io::writePly(folder_ / "fixed.ply", *fixed_);
+  writeFiles(kUnscaled, unscaled);
 }
 
-const PairFiles::Moving& PairFiles::moving(const Cell& cell) {
+void PairRuns::writeFiles(const std::string& key, Moving& moving) const {
+  moving.cloud_file = folder_ / fmt::format("moving_{}.ply", key);
+  moving.truth_file = folder_ / fmt::format("truth_{}.txt", key);
+  io::writePly(moving.cloud_file, moving.cloud);
+  io::writeMatrix(moving.truth_file, moving.truth.best_affine, "truth, moving file -> fixed file");
+}
+
+const PairRuns::Moving& PairRuns::movingFor(const AddedError* error) {
   const std::lock_guard lock(mutex_);
-  const std::string key = fmt::format("{:.4g}", cell.scale);
+  const std::string key = error == nullptr ? kUnscaled : fmt::format("{:.4g}", error->scale);
   const auto known = moving_.find(key);
   if (known != moving_.end()) return known->second;
-  const Eigen::Affine3d scaled = scaleError(cell, seed_, pair_.moving);
-  Moving made{folder_ / fmt::format("moving_{}.ply", key),
-              folder_ / fmt::format("truth_{}.txt", key), pair_.moving, pair_.truth};
+  const Eigen::Affine3d scaled = scaleError(*error, seed_, unscaled_->cloud);
+  Moving made = *unscaled_;
   transformCloud(made.cloud, scaled);
-  made.truth.best_affine = pair_.truth.best_affine * scaled.inverse();
-  io::writePly(made.cloud_file, made.cloud);
-  io::writeMatrix(made.truth_file, made.truth.best_affine, "truth, moving file -> fixed file");
+  made.truth.best_affine = unscaled_->truth.best_affine * scaled.inverse();
+  if (!options_.in_process) writeFiles(key, made);
   return moving_.emplace(key, std::move(made)).first->second;
 }
 
-Eigen::Affine3d PairFiles::guess(const Cell& cell) {
+Eigen::Affine3d PairRuns::guessFor(const Start& start) const {
+  if (start.error == nullptr) return guess_;
   // The guess takes the file's lengths at face value; the middle is where it was.
-  return wrongGuess(cell, seed_, pair_.moving, pair_.prior);
+  return wrongGuess(start.suite, *start.error, seed_, unscaled_->cloud, guess_);
 }
 
-void runMethod(const MethodCall& call, PairFiles& files, const Cell& cell,
-               const std::string& name, Row& row) {
-  const PairFiles::Moving& moving = files.moving(cell);
-  const std::filesystem::path guess = files.folder() / (name + ".guess.txt");
-  const std::filesystem::path result = files.folder() / (name + ".json");
-  const std::filesystem::path log = files.folder() / (name + ".log");
-  io::writeMatrix(guess, files.guess(cell), "initial guess, moving file -> fixed file");
+void PairRuns::run(const Method& method, const Start& start, const std::string& name, Row& row) {
+  const Moving& moving = movingFor(start.error);
+  row.in_process = options_.in_process;
+  row.negative = !overlaps_;
+  row.fixed_points = static_cast<double>(fixed_->size());
+  row.moving_points = static_cast<double>(moving.cloud.size());
+  if (options_.in_process) {
+    fillErrors(runHere(method, moving, start, row), moving, row);
+  } else if (const auto outcome = runChildOf(method, moving, start, name, row)) {
+    fillErrors(*outcome, moving, row);
+  }
+}
+
+MethodOutcome PairRuns::runHere(const Method& method, const Moving& moving, const Start& start,
+                                Row& row) const {
+  const MethodInput input{.fixed = *fixed_,
+                          .moving = moving.cloud,
+                          .guess = guessFor(start),
+                          .prior = start.told,
+                          .truth = moving.truth.best_affine};
+  const Stopwatch watch;
+  const double cpu = cpuSeconds();
+  MethodOutcome outcome = method.run(input);
+  row.run_s = row.wall_s = watch.seconds();
+  row.cpu_s = cpuSeconds() - cpu;
+  return outcome;
+}
+
+std::optional<MethodOutcome> PairRuns::runChildOf(const Method& method, const Moving& moving,
+                                                  const Start& start, const std::string& name,
+                                                  Row& row) const {
+  const std::filesystem::path guess = folder_ / (name + ".guess.txt");
+  const std::filesystem::path result = folder_ / (name + ".json");
+  const std::filesystem::path log = folder_ / (name + ".log");
+  io::writeMatrix(guess, guessFor(start), "initial guess, moving file -> fixed file");
   const ChildResult child = runChild(
-      {call.program.string(), call.method, files.fixedFile().string(), moving.cloud_file.string(),
-       "--guess", guess.string(), "--true-transform", moving.truth_file.string(), "--prior-sigma",
-       cell.priorText(), "--inlier-tolerance", fmt::format("{}", kRightMatch), "--time-limit",
-       fmt::format("{:.3f}", kSoftShare * call.time_limit), "--threads", "1", "--overwrite", "-o",
-       result.string()},
-      call.time_limit, log);
-  row.errors = noErrors();
+      {options_.program.string(), "register-one", method.name(), (folder_ / "fixed.ply").string(),
+       moving.cloud_file.string(), "--guess", guess.string(), "--true-transform",
+       moving.truth_file.string(), "--prior-sigma", toldText(start.told), "--time-limit",
+       fmt::format("{:.3f}", kSoftShare * options_.time_limit), "--threads",
+       fmt::format("{}", options_.threads), "--overwrite", "-o", result.string()},
+      options_.time_limit, log);
   row.wall_s = child.wall_s;
   row.cpu_s = child.cpu_s;
-  const bool answered = child.exit_code == 0 || child.exit_code == 10;
+  std::optional<MethodOutcome> outcome;
   if (child.timed_out) {
     row.status = "timeout";
     row.peak_mib = child.peak_mib;
-    row.note = fmt::format("ended after {:.0f} s", call.time_limit);
-  } else if (answered) {
-    std::ifstream file(result);
-    fillFromJson(nlohmann::json::parse(file), moving, row);
+    row.message = fmt::format("ended after {:.0f} s", options_.time_limit);
+  } else if (child.exit_code == 0) {
+    Answer answer = readAnswer(result);
+    row.run_s = answer.run_s;
+    row.peak_mib = answer.peak_mib;
+    row.idle_mib = answer.idle_mib;
+    outcome = std::move(answer.outcome);
   } else if (child.exit_code > 1) {
-    // Bad usage or input is a fault of the comparison, not of the method.
-    throw InputError(fmt::format("agricolmap_method {}: {}", call.method, firstLine(log)));
+    // Bad usage or input is a fault of the experiment, not of the method.
+    throw InputError(fmt::format("register-one {}: {}", method.name(), firstLine(log)));
   } else {
     row.status = "crashed";
-    row.note = child.signal != 0 ? fmt::format("signal {}", child.signal) : firstLine(log);
+    row.message = child.signal != 0 ? fmt::format("signal {}", child.signal) : firstLine(log);
   }
   for (const std::filesystem::path& path : {guess, result, log}) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
   }
+  return outcome;
+}
+
+void PairRuns::fillErrors(const MethodOutcome& outcome, const Moving& moving, Row& row) const {
+  row.status = statusOf(outcome);
+  row.accepted = row.status == "accepted";
+  row.message = outcome.why;
+  row.stages = stageText(outcome.times);
+  for (const auto& [name, value] : outcome.facts) row.*numberColumn(name) = value;
+  if (!outcome.fixed_from_moving) return;
+  const evaluate::RegistrationErrors errors =
+      evaluate::evaluateTransform(*outcome.fixed_from_moving, moving.truth, moving.cloud);
+  setErrors(errors, row);
+  const evaluate::SuccessLimits limits;
+  row.right = overlaps_ && errors.within(limits);
+  row.right_in_plane = overlaps_ && errors.rms_horizontal <= limits.rms;
+  if (!outcome.stated) return;
+  if (const auto coverage = coverageOf(*outcome.fixed_from_moving, *outcome.stated, *fixed_,
+                                       moving.cloud, moving.truth)) {
+    row.pose_mahalanobis2 = coverage->pose_distance2;
+    row.centre_mahalanobis2 = coverage->shift_distance2;
+    row.height_mahalanobis2 = coverage->height_distance2;
+  }
+}
+
+double peakMemory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kib = 0.0;
+    if (word == "VmHWM:" && status >> kib) return kib / 1024.0;
+  }
+  return 0.0;
 }
 
 }  // namespace agricolmap::experiments

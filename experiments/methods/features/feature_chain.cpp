@@ -13,6 +13,7 @@ class FeatureChain : public Method {
       : extractor_(std::move(extractor)), about_(std::move(about)) {}
   std::string name() const override { return extractor_->name(); }
   std::string about() const override { return about_; }
+  Traits traits() const override { return {.matches_points = true}; }
 
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
@@ -21,7 +22,7 @@ class FeatureChain : public Method {
     const FeatureAssociation association(*extractor_, {}, options.flow.vote);
     const pipeline::Registration result = pipeline::registerClouds(
         input.fixed, input.moving, input.guess, options, outcome.times, &association);
-    fillFrom(result, input, outcome);
+    fillFrom(result, input, true, outcome);
   }
 
  private:

@@ -30,6 +30,7 @@ class FpfhGicp : public Method {
   std::string about() const override {
     return "FPFH, fast global registration and generalised ICP of Open3D";
   }
+  Traits traits() const override { return {.rigid = true}; }
 
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {

@@ -28,7 +28,8 @@ Points inSpace(const std::vector<map::VegetationPoint>& vegetation) {
   return points;
 }
 
-/// The rigid motion with the least squares between paired points.
+/// The rigid motion with the least squares between paired points. Not Eigen::umeyama: g++ 12 with AVX
+/// takes it for a read out of bounds.
 Eigen::Isometry3d fitRigid(const Points& from, const Points& to) {
   Eigen::Vector3d from_mean = Eigen::Vector3d::Zero();
   Eigen::Vector3d to_mean = Eigen::Vector3d::Zero();
@@ -60,7 +61,7 @@ Eigen::Isometry3d rigidIcp(const NearestPoints& fixed, const Points& moving,
   struct Pair {
     double distance;
     std::size_t moving;
-    std::uint32_t fixed;
+    std::size_t fixed;
   };
   for (int step = 0; step < options.icp_iterations; ++step) {
     std::vector<std::optional<NearestPoints::Neighbour>> found(moving.size());
@@ -97,6 +98,7 @@ class GoIcp : public Method {
   std::string about() const override {
     return "rigid branch and bound on the vegetation points, stops at the time limit";
   }
+  Traits traits() const override { return {.slow = true, .rigid = true}; }
 
  protected:
   void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
@@ -116,7 +118,7 @@ class GoIcp : public Method {
     for (Eigen::Vector3d& p : few) p -= middle;
     // The search moves the middle from where the guess lays it.
     for (Eigen::Vector3d& p : fixed) p -= middle;
-    const NearestPoints near(fixed, 0.1);
+    const NearestPoints near(fixed);
     const DistanceField field = outcome.times.run(
         "field", [&] { return DistanceField(fixed, options_.field_cell, options_.field_margin); });
     const GoIcpResult result = outcome.times.run("search", [&] {

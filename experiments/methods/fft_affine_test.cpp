@@ -1,10 +1,10 @@
-// The methods beyond the paper that work in the plane: FFT correlation and SIFT.
+// FFT correlation and dense refinement without what the product adds.
+#include "experiments/methods/fft_affine.hpp"
+
 #include <gtest/gtest.h>
 
 #include "agricolmap/core/random.hpp"
-#include "experiments/methods/fft_affine.hpp"
 #include "experiments/methods/plain_correlation.hpp"
-#include "experiments/methods/sift_affine.hpp"
 #include "experiments/methods/test_pair.hpp"
 
 namespace agricolmap::experiments {
@@ -57,18 +57,6 @@ TEST(FftAffine, IsRightFromAfar) {
 }
 
 TEST(FftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeFftAffine()); }
-
-TEST(SiftAffine, IsRightFromNearby) {
-  testing::GuessError error;
-  error.shift = {0.3, -0.2};
-  PriorUncertainty prior = somePrior();
-  prior.translation = 0.5;
-  prior.heading_deg = 1.0;
-  prior.scale = 0.02;
-  testing::expectRight(*makeSiftAffine(), error, prior);
-}
-
-TEST(SiftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeSiftAffine()); }
 
 }  // namespace
 }  // namespace agricolmap::experiments
