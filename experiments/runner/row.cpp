@@ -76,7 +76,7 @@ const std::vector<Column>& columns() {
   // In the order of the members.
   static const std::vector<Column> all = {{"suite", &Row::suite},
                                           {"settings", &Row::settings},
-                                          {"case", &Row::case_name},
+                                          {"case_name", &Row::case_name},
                                           {"dataset", &Row::dataset},
                                           {"kind", &Row::kind},
                                           {"seed", &Row::seed},

@@ -17,9 +17,8 @@ namespace agricolmap::experiments {
 
 inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-/// The columns are called as the members, `case_name` as `case`. Lengths in metres, times in
-/// seconds, angles in radians, scales relative (0.1: 10 %). What the cases of the older suites
-/// should reach stands in analysis/targets.csv, by case.
+/// The columns are called as the members. Lengths in metres, times in seconds, angles in radians,
+/// scales relative (0.1: 10 %). What cases should reach stands in analysis/targets.csv.
 struct Row {
   // What was run.
   std::string suite;      ///< paper, locate, curves; translation, heading, joint, accuracy, inliers
@@ -28,21 +27,21 @@ struct Row {
   std::string dataset;    ///< crop or imagery that the pair is of, such as sugar-beet-10m
   std::string kind;  ///< simulated, semi-real (strips of real imagery) or real (two real clouds)
   int seed = 0;      ///< of the pair
-  double setting =
-      0.0;  ///< what the suite varies: error of the guess [m], [rad], share or scale of
-            ///< it (translation, heading, joint, accuracy), value of the option (curves)
+  /// What the suite varies: error of the guess [m], [rad], share or scale of it (translation,
+  /// heading, joint, accuracy), value of the option (curves).
+  double setting = 0.0;
   double guess_scale = 0.0;  ///< scale error that the suite adds to the moving cloud's x and y
   int field = 0;             ///< pairs of one field are not independent: keep them in one fold
   bool negative = false;     ///< the clouds have nothing in common: no answer can be right
-  double guess_translation = kNotKnown;  ///< how wrong the guess is; for cases with `uniform`
-                                         ///< guesses (case's own options) at most, else exactly [m]
-  double guess_heading = kNotKnown;      ///< likewise [rad]
-  std::string told;    ///< how wrong the method is told that it may be: `T_M;HEADING_DEG;SCALE_%`,
-                       ///< `none`, either with `;unit` where the file's unit is unknown
+  /// How wrong the guess is [m]: exactly, or at most, where the case draws it (no guess, --uniform).
+  double guess_translation = kNotKnown;
+  double guess_heading = kNotKnown;  ///< likewise [rad]
+  /// How wrong the method is told that it may be: `T_M;HEADING_DEG;SCALE_%`, or `none` for no guess;
+  /// with `;unit` where the file's unit is unknown.
+  std::string told;
   std::string method;  ///< preset, preset with options (`default:grid.cell=0.03`), or peer
   int threads = 0;     ///< that it might use
-  bool in_process =
-      false;  ///< else as a child with a time limit, which wall time and memory are of
+  bool in_process = false;  ///< else as a child, whose wall time and memory these are
 
   // What came of it.
   /// accepted; rejected or ambiguous (a transform that the method does not stand by); failed (no
