@@ -1,5 +1,4 @@
-#include "experiments/methods/fft_affine.hpp"
-
+// FFT correlation over heading and scales, then dense Gauss-Newton: the simplest thing that works.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,12 +8,20 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/locate/hypotheses.hpp"
+#include "agricolmap/refine/dense_refine.hpp"
 #include "experiments/methods/peer_maps.hpp"
+#include "experiments/methods/peers.hpp"
 #include "experiments/methods/plain_correlation.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
+// All values are our choice.
+constexpr int kFactor = 6;            // cells of the correlation in grid cells: 12 cm
+constexpr double kStep = 1.5;         // by which a step of heading or scale moves the ends [cells]
+constexpr std::size_t kMost = 30;     // best hypotheses that are refined
+constexpr double kApart = 0.3;        // by which two of them lay a corner apart at least [m]
+constexpr double kLeastEnergy = 0.5;  // of the fixed map under the strip, in its mean: no rim
 /// Cells of the refinement in grid cells: 12 and 6 cm for all candidates, 4 and 2 cm for the best.
 constexpr std::array<int, 2> kCoarse = {6, 3};
 constexpr std::array<int, 2> kFine = {2, 1};
@@ -84,146 +91,123 @@ struct Candidate {
   double score = 0.0;
 };
 
-double farthestCorner(const GridFrame& frame, const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
-  double farthest = 0.0;
-  for (const double row : {-0.5, frame.rows - 0.5}) {
-    for (const double col : {-0.5, frame.cols - 0.5}) {
-      const Eigen::Vector2d corner = frame.centre(row, col);
-      farthest = std::max(farthest, (a * corner - b * corner).norm());
-    }
-  }
-  return farthest;
+map::Box2 boxOf(const GridFrame& frame) {
+  const Eigen::Vector2d size = frame.cell * Eigen::Vector2d(frame.cols, frame.rows);
+  return {frame.corner, (frame.corner + size).eval()};
 }
 
-class FftAffine : public Method {
- public:
-  explicit FftAffine(const FftAffineOptions& options) : options_(options) {}
-  std::string name() const override { return "fft-affine"; }
-  std::string about() const override {
-    return "exhaustive FFT correlation over heading and scales, then dense Gauss-Newton";
-  }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    const PeerMaps maps = makePeerMaps(input, outcome.times);
-    const std::vector<Candidate> candidates =
-        outcome.times.run("correlate", [&] { return search(maps); });
-    const std::optional<Eigen::Affine2d> pose =
-        outcome.times.run("refine", [&] { return refine(maps, candidates); });
-    if (!pose) {
-      outcome.why = candidates.empty() ? "the maps correlate nowhere within the prior's limits"
-                                       : "no placement holds when refined";
-      return;
-    }
-    outcome.accepted = true;
-    setPlanePose(maps, input, *pose, outcome);
-  }
-
- private:
-  /// Best placements, best first.
-  std::vector<Candidate> search(const PeerMaps& maps) const {
-    const map::SignalMap fixed = map::makeSignalMap(maps.fixed, options_.factor, {});
-    const map::SignalMap moving = map::makeSignalMap(maps.moving, options_.factor, {});
-    const std::vector<locate::Hypothesis> all = hypothesesOver(maps, moving);
-    int most_rows = 1;
-    int most_cols = 1;
-    const Eigen::Vector2d& centre = maps.space.centre;
-    for (const locate::Hypothesis& one : all) {
-      const PlainCorrelation::Piece piece =
-          blankPiece(moving.frame, centre, locate::linearOf(one, maps.space.scale_axes));
-      most_rows = std::max(most_rows, piece.value.rows());
-      most_cols = std::max(most_cols, piece.value.cols());
-    }
-    const PlainCorrelation correlation(fixed, most_rows, most_cols, options_.least_energy);
-    std::vector<Candidate> found(all.size());
-    parallelFor(all.size(), [&](std::size_t i) {
-      Candidate& candidate = found[i];
-      candidate.pose.linear() = locate::linearOf(all[i], maps.space.scale_axes);
-      const PlainCorrelation::Peak peak =
-          correlation.best(pieceOf(moving, centre, candidate.pose.linear()), centre,
-                           maps.space.uncertainty.translation + moving.frame.cell);
-      candidate.pose.translation() = peak.anchor - candidate.pose.linear() * centre;
-      candidate.score = peak.score;
-    });
-    return distinct(std::move(found), moving.frame);
-  }
-
-  std::vector<locate::Hypothesis> hypothesesOver(const PeerMaps& maps,
-                                                 const map::SignalMap& moving) const {
-    const PriorUncertainty& prior = maps.space.uncertainty;
-    const Eigen::Vector2d half = halfExtent(moving, maps.space.scale_axes, maps.space.centre);
-    const double shift = options_.step * moving.frame.cell;
-    const double heading = prior.heading_deg * std::numbers::pi / 180.0;
-    const double scale = logScaleLimit(prior);
-    std::vector<locate::Hypothesis> all;
-    for (const double yaw : stepsOver(heading, shift / half.norm())) {
-      for (const double x : stepsOver(scale, shift / half.x())) {
-        for (const double y : stepsOver(scale, shift / half.y())) {
-          all.push_back({yaw, std::exp(x), std::exp(y)});
-        }
+std::vector<locate::Hypothesis> hypothesesOver(const PeerMaps& maps, const map::SignalMap& moving) {
+  const PriorUncertainty& prior = maps.space.uncertainty;
+  const Eigen::Vector2d half = halfExtent(moving, maps.space.scale_axes, maps.space.centre);
+  const double shift = kStep * moving.frame.cell;
+  const double heading = prior.heading_deg * std::numbers::pi / 180.0;
+  const double scale = logScaleLimit(prior);
+  std::vector<locate::Hypothesis> all;
+  for (const double yaw : stepsOver(heading, shift / half.norm())) {
+    for (const double x : stepsOver(scale, shift / half.x())) {
+      for (const double y : stepsOver(scale, shift / half.y())) {
+        all.push_back({yaw, std::exp(x), std::exp(y)});
       }
     }
-    return all;
   }
+  return all;
+}
 
-  std::vector<Candidate> distinct(std::vector<Candidate> found, const GridFrame& frame) const {
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    std::vector<Candidate> result;
-    for (const Candidate& candidate : found) {
-      if (result.size() == static_cast<std::size_t>(options_.candidates)) break;
-      if (!(candidate.score > 0.0)) break;
-      const bool known = std::any_of(result.begin(), result.end(), [&](const Candidate& better) {
-        return farthestCorner(frame, better.pose, candidate.pose) < options_.apart;
-      });
-      if (!known) result.push_back(candidate);
-    }
-    return result;
-  }
-
-  std::optional<Eigen::Affine2d> refine(const PeerMaps& maps,
-                                        const std::vector<Candidate>& candidates) const {
-    std::vector<std::optional<refine::DenseRefineResult>> refined(candidates.size());
-    std::vector<map::SignalMap> fixed;
-    std::vector<map::SignalMap> moving;
-    for (const int factor : kCoarse) {
-      fixed.push_back(map::makeSignalMap(maps.fixed, factor, {}));
-      moving.push_back(map::makeSignalMap(maps.moving, factor, {}));
-    }
-    parallelFor(candidates.size(), [&](std::size_t i) {
-      Eigen::Affine2d pose = candidates[i].pose;
-      for (std::size_t level = 0; level < fixed.size(); ++level) {
-        refined[i] = refine::refineDense(fixed[level], moving[level], pose, options_.dense);
-        if (refined[i]->status != refine::RefineStatus::kConverged) {
-          refined[i].reset();
-          return;
-        }
-        pose = refined[i]->fixed_from_moving;
-      }
+std::vector<Candidate> distinct(std::vector<Candidate> found, const GridFrame& frame) {
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::vector<Candidate> result;
+  for (const Candidate& candidate : found) {
+    if (result.size() == kMost) break;
+    if (!(candidate.score > 0.0)) break;
+    const bool known = std::any_of(result.begin(), result.end(), [&](const Candidate& better) {
+      return cornerDistance(boxOf(frame), better.pose, candidate.pose) < kApart;
     });
-    const refine::DenseRefineResult* best = nullptr;
-    for (const auto& one : refined) {
-      if (one && (best == nullptr || one->correlation > best->correlation)) best = &*one;
-    }
-    if (best == nullptr) return std::nullopt;
-    Eigen::Affine2d pose = best->fixed_from_moving;
-    for (const int factor : kFine) {
-      const refine::DenseRefineResult finer =
-          refine::refineDense(map::makeSignalMap(maps.fixed, factor, {}),
-                              map::makeSignalMap(maps.moving, factor, {}), pose, options_.dense);
-      if (finer.status != refine::RefineStatus::kConverged) break;
-      pose = finer.fixed_from_moving;
-    }
-    return pose;
+    if (!known) result.push_back(candidate);
   }
+  return result;
+}
 
-  FftAffineOptions options_;
-};
+/// Best placements, best first.
+std::vector<Candidate> search(const PeerMaps& maps) {
+  const map::SignalMap fixed = map::makeSignalMap(maps.fixed, kFactor, {});
+  const map::SignalMap moving = map::makeSignalMap(maps.moving, kFactor, {});
+  const std::vector<locate::Hypothesis> all = hypothesesOver(maps, moving);
+  int most_rows = 1;
+  int most_cols = 1;
+  const Eigen::Vector2d& centre = maps.space.centre;
+  for (const locate::Hypothesis& one : all) {
+    const PlainCorrelation::Piece piece =
+        blankPiece(moving.frame, centre, locate::linearOf(one, maps.space.scale_axes));
+    most_rows = std::max(most_rows, piece.value.rows());
+    most_cols = std::max(most_cols, piece.value.cols());
+  }
+  const PlainCorrelation correlation(fixed, most_rows, most_cols, kLeastEnergy);
+  std::vector<Candidate> found(all.size());
+  parallelFor(all.size(), [&](std::size_t i) {
+    Candidate& candidate = found[i];
+    candidate.pose.linear() = locate::linearOf(all[i], maps.space.scale_axes);
+    const PlainCorrelation::Peak peak =
+        correlation.best(pieceOf(moving, centre, candidate.pose.linear()), centre,
+                         maps.space.uncertainty.translation + moving.frame.cell);
+    candidate.pose.translation() = peak.anchor - candidate.pose.linear() * centre;
+    candidate.score = peak.score;
+  });
+  return distinct(std::move(found), moving.frame);
+}
+
+std::optional<Eigen::Affine2d> refined(const PeerMaps& maps,
+                                       const std::vector<Candidate>& candidates) {
+  const refine::DenseRefineOptions dense;
+  std::vector<std::optional<refine::DenseRefineResult>> results(candidates.size());
+  std::vector<map::SignalMap> fixed;
+  std::vector<map::SignalMap> moving;
+  for (const int factor : kCoarse) {
+    fixed.push_back(map::makeSignalMap(maps.fixed, factor, {}));
+    moving.push_back(map::makeSignalMap(maps.moving, factor, {}));
+  }
+  parallelFor(candidates.size(), [&](std::size_t i) {
+    Eigen::Affine2d pose = candidates[i].pose;
+    for (std::size_t level = 0; level < fixed.size(); ++level) {
+      results[i] = refine::refineDense(fixed[level], moving[level], pose, dense);
+      if (results[i]->status != refine::RefineStatus::kConverged) {
+        results[i].reset();
+        return;
+      }
+      pose = results[i]->fixed_from_moving;
+    }
+  });
+  const refine::DenseRefineResult* best = nullptr;
+  for (const auto& one : results) {
+    if (one && (best == nullptr || one->correlation > best->correlation)) best = &*one;
+  }
+  if (best == nullptr) return std::nullopt;
+  Eigen::Affine2d pose = best->fixed_from_moving;
+  for (const int factor : kFine) {
+    const refine::DenseRefineResult finer =
+        refine::refineDense(map::makeSignalMap(maps.fixed, factor, {}),
+                            map::makeSignalMap(maps.moving, factor, {}), pose, dense);
+    if (finer.status != refine::RefineStatus::kConverged) break;
+    pose = finer.fixed_from_moving;
+  }
+  return pose;
+}
 
 }  // namespace
 
-std::unique_ptr<Method> makeFftAffine(const FftAffineOptions& options) {
-  return std::make_unique<FftAffine>(options);
+void fftAffine(const MethodInput& input, MethodOutcome& outcome) {
+  const PeerMaps maps = makePeerMaps(input, outcome.times);
+  const std::vector<Candidate> candidates =
+      outcome.times.run("correlate", [&] { return search(maps); });
+  const std::optional<Eigen::Affine2d> pose =
+      outcome.times.run("refine", [&] { return refined(maps, candidates); });
+  if (!pose) {
+    outcome.why = candidates.empty() ? "the maps correlate nowhere within the prior's limits"
+                                     : "no placement holds when refined";
+    return;
+  }
+  outcome.accepted = true;
+  setPlanePose(maps, input, *pose, outcome);
 }
 
 }  // namespace agricolmap::experiments

@@ -1,6 +1,4 @@
 // FFT correlation and dense refinement without what the product adds.
-#include "experiments/methods/fft_affine.hpp"
-
 #include <gtest/gtest.h>
 
 #include "agricolmap/core/random.hpp"
@@ -53,10 +51,10 @@ testing::GuessError someError() {
 }
 
 TEST(FftAffine, IsRightFromAfar) {
-  testing::expectRight(*makeFftAffine(), someError(), somePrior());
+  testing::expectRight(makeMethod("fft-affine"), someError(), somePrior());
 }
 
-TEST(FftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeFftAffine()); }
+TEST(FftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(makeMethod("fft-affine")); }
 
 }  // namespace
 }  // namespace agricolmap::experiments

@@ -1,5 +1,4 @@
-#include "experiments/methods/icp_affine.hpp"
-
+// Affine ICP on the vegetation points.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -9,9 +8,20 @@
 #include "agricolmap/core/parallel.hpp"
 #include "experiments/methods/nearest_points.hpp"
 #include "experiments/methods/peer_maps.hpp"
+#include "experiments/methods/peers.hpp"
 
 namespace agricolmap::experiments {
 namespace {
+
+// Points per cloud at most, merged to squares. Our choice: all of a 10 m strip's at 2 cm.
+constexpr std::size_t kMostFixed = 60000;
+constexpr std::size_t kMostMoving = 20000;
+// Pairs further apart do not count [m]. Our choice: about a row's width; without any limit, plants
+// that the other map lacks pull the strip out of shape.
+constexpr double kMostDistance = 0.3;
+constexpr int kIterations = 200;  // at most; our choice, it converges in 20 to 80
+constexpr double kStop = 1e-4;    // done when no corner of the strip moves further [m]; our choice
+constexpr double kLeastPairs = 0.2;  // share of the moving points that need a partner; our choice
 
 /// Sums of the least-squares problem fixed = M·(moving, 1), and of the heights' difference.
 struct Sums {
@@ -54,79 +64,49 @@ Sums pairUp(const NearestPoints& fixed, const std::vector<map::VegetationPoint>&
   });
 }
 
-double farthestCorner(const map::Box2& box, const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
-  double farthest = 0.0;
-  for (const auto which :
-       {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
-    const Eigen::Vector2d corner = box.corner(which);
-    farthest = std::max(farthest, (a * corner - b * corner).norm());
+/// Why there is no answer, or nothing; `converged` says whether it came to rest.
+std::string iterate(const PeerPoints& points, Pose& pose, bool& converged) {
+  std::vector<Eigen::Vector3d> targets;
+  targets.reserve(points.fixed.size());
+  for (const map::VegetationPoint& p : points.fixed) {
+    targets.emplace_back(p.position.x(), p.position.y(), p.height);
   }
-  return farthest;
+  const NearestPoints fixed(std::move(targets));
+  map::Box2 box;
+  for (const map::VegetationPoint& p : points.moving) box.extend(p.position);
+  const Eigen::Vector2d middle = box.center();
+  converged = false;
+  for (int i = 0; i < kIterations && !converged; ++i) {
+    const Sums sums = pairUp(fixed, points.moving, middle, pose, kMostDistance);
+    if (sums.pairs < kLeastPairs * static_cast<double>(points.moving.size())) {
+      return fmt::format("only {:.0f} of {} moving points have a fixed one within {} m", sums.pairs,
+                         points.moving.size(), kMostDistance);
+    }
+    const Eigen::FullPivLU<Eigen::Matrix3d> solver(sums.from);
+    if (!solver.isInvertible()) return "the pairs determine no affine";
+    const Eigen::Matrix<double, 2, 3> fit = solver.solve(sums.to.transpose()).transpose();
+    Pose next;
+    next.plane.linear() = fit.leftCols<2>();
+    next.plane.translation() = fit.col(2) - fit.leftCols<2>() * middle;
+    next.height = sums.height / sums.pairs;
+    if (!(next.plane.linear().determinant() > 0.0)) return "the map collapsed";
+    converged = cornerDistance(box, next.plane, pose.plane) < kStop;
+    pose = next;
+  }
+  return {};
 }
-
-class IcpAffine : public Method {
- public:
-  explicit IcpAffine(const IcpAffineOptions& options) : options_(options) {}
-  std::string name() const override { return "icp-affine"; }
-  std::string about() const override { return "affine ICP on the vegetation points"; }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    const PeerMaps maps = makePeerMaps(input, outcome.times);
-    const PeerPoints points =
-        makePeerPoints(maps, maps.space.uncertainty.translation + 1.0, options_.most_fixed,
-                       options_.most_moving, outcome.times);
-    Pose pose;
-    const std::string failure =
-        outcome.times.run("icp", [&] { return iterate(points, pose, outcome.accepted); });
-    if (!failure.empty()) {
-      outcome.why = failure;
-      return;
-    }
-    if (!outcome.accepted) outcome.why = "still moving when the iterations ended";
-    setPlanePose(maps, input, pose.plane, outcome);
-  }
-
- private:
-  /// Why there is no answer, or nothing; `converged` says whether it came to rest.
-  std::string iterate(const PeerPoints& points, Pose& pose, bool& converged) const {
-    std::vector<Eigen::Vector3d> targets;
-    targets.reserve(points.fixed.size());
-    for (const map::VegetationPoint& p : points.fixed) {
-      targets.emplace_back(p.position.x(), p.position.y(), p.height);
-    }
-    const NearestPoints fixed(std::move(targets));
-    map::Box2 box;
-    for (const map::VegetationPoint& p : points.moving) box.extend(p.position);
-    const Eigen::Vector2d middle = box.center();
-    converged = false;
-    for (int i = 0; i < options_.iterations && !converged; ++i) {
-      const Sums sums = pairUp(fixed, points.moving, middle, pose, options_.most_distance);
-      if (sums.pairs < options_.least_pairs * static_cast<double>(points.moving.size())) {
-        return fmt::format("only {:.0f} of {} moving points have a fixed one within {} m",
-                           sums.pairs, points.moving.size(), options_.most_distance);
-      }
-      const Eigen::FullPivLU<Eigen::Matrix3d> solver(sums.from);
-      if (!solver.isInvertible()) return "the pairs determine no affine";
-      const Eigen::Matrix<double, 2, 3> fit = solver.solve(sums.to.transpose()).transpose();
-      Pose next;
-      next.plane.linear() = fit.leftCols<2>();
-      next.plane.translation() = fit.col(2) - fit.leftCols<2>() * middle;
-      next.height = sums.height / sums.pairs;
-      if (!(next.plane.linear().determinant() > 0.0)) return "the map collapsed";
-      converged = farthestCorner(box, next.plane, pose.plane) < options_.stop;
-      pose = next;
-    }
-    return {};
-  }
-
-  IcpAffineOptions options_;
-};
 
 }  // namespace
 
-std::unique_ptr<Method> makeIcpAffine(const IcpAffineOptions& options) {
-  return std::make_unique<IcpAffine>(options);
+void icpAffine(const MethodInput& input, MethodOutcome& outcome) {
+  const PeerMaps maps = makePeerMaps(input, outcome.times);
+  const PeerPoints points = makePeerPoints(maps, maps.space.uncertainty.translation + 1.0,
+                                           kMostFixed, kMostMoving, outcome.times);
+  Pose pose;
+  outcome.why = outcome.times.run("icp", [&] { return iterate(points, pose, outcome.accepted); });
+  if (!outcome.why.empty()) return;
+  if (!outcome.accepted) outcome.why = "still moving when the iterations ended";
+  setPlanePose(maps, input, pose.plane, outcome);
 }
 
 }  // namespace agricolmap::experiments

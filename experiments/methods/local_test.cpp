@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "agricolmap/core/random.hpp"
-#include "experiments/methods/cpd_affine.hpp"
-#include "experiments/methods/icp_affine.hpp"
 #include "experiments/methods/nearest_points.hpp"
 #include "experiments/methods/test_pair.hpp"
 
@@ -49,17 +47,17 @@ testing::GuessError faraway() {
   return error;
 }
 
-TEST(IcpAffine, IsRightFromNearby) { testing::expectRight(*makeIcpAffine(), nearby(), {}); }
+TEST(IcpAffine, IsRightFromNearby) { testing::expectRight(makeMethod("icp-affine"), nearby(), {}); }
 
-TEST(IcpAffine, IsLostFromFaraway) { testing::expectLost(*makeIcpAffine(), faraway()); }
+TEST(IcpAffine, IsLostFromFaraway) { testing::expectLost(makeMethod("icp-affine"), faraway()); }
 
-TEST(IcpAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeIcpAffine()); }
+TEST(IcpAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(makeMethod("icp-affine")); }
 
-TEST(CpdAffine, IsRightFromNearby) { testing::expectRight(*makeCpdAffine(), nearby(), {}); }
+TEST(CpdAffine, IsRightFromNearby) { testing::expectRight(makeMethod("cpd-affine"), nearby(), {}); }
 
-TEST(CpdAffine, IsLostFromFaraway) { testing::expectLost(*makeCpdAffine(), faraway()); }
+TEST(CpdAffine, IsLostFromFaraway) { testing::expectLost(makeMethod("cpd-affine"), faraway()); }
 
-TEST(CpdAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeCpdAffine()); }
+TEST(CpdAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(makeMethod("cpd-affine")); }
 
 }  // namespace
 }  // namespace agricolmap::experiments

@@ -20,36 +20,6 @@ Eigen::Affine3d withTrueScales(const Eigen::Affine3d& guess, const Eigen::Affine
          Eigen::Translation3d(-middle);
 }
 
-class OracleScale : public Method {
- public:
-  explicit OracleScale(std::unique_ptr<Method> method) : method_(std::move(method)) {}
-  std::string name() const override { return method_->name() + "-oracle-scale"; }
-  std::string about() const override {
-    return method_->about() + "; the true horizontal scales are given to it";
-  }
-  Traits traits() const override {
-    Traits traits = method_->traits();
-    traits.rigid = false;
-    return traits;
-  }
-  std::string optionsText() const override { return method_->optionsText(); }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    if (!input.truth) {
-      throw UsageError(name() + ": needs the true transform, for its scales");
-    }
-    MethodInput known = input;
-    known.guess = withTrueScales(input.guess, *input.truth, pipeline::meanOf(input.moving));
-    known.truth.reset();
-    known.prior.scale = 0.0;
-    outcome = method_->run(known);
-  }
-
- private:
-  std::unique_ptr<Method> method_;
-};
-
 }  // namespace
 
 double factOf(const MethodOutcome& outcome, const std::string& name) {
@@ -74,8 +44,22 @@ MethodOutcome Method::run(const MethodInput& input) const {
   return outcome;
 }
 
-std::unique_ptr<Method> withOracleScale(std::unique_ptr<Method> method) {
-  return std::make_unique<OracleScale>(std::move(method));
+Method withOracleScale(Method method) {
+  Method helped = method;
+  helped.name += "-oracle-scale";
+  helped.about += "; the true horizontal scales are given to it";
+  helped.traits.rigid = false;
+  helped.attempt = [method = std::move(method)](const MethodInput& input, MethodOutcome& outcome) {
+    if (!input.truth) {
+      throw UsageError(method.name + "-oracle-scale: needs the true transform, for its scales");
+    }
+    MethodInput known = input;
+    known.guess = withTrueScales(input.guess, *input.truth, pipeline::meanOf(input.moving));
+    known.truth.reset();
+    known.prior.scale = 0.0;
+    outcome = method.run(known);
+  };
+  return helped;
 }
 
 }  // namespace agricolmap::experiments

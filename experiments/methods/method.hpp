@@ -3,7 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -55,35 +55,28 @@ struct Traits {
   bool needs_guess = true;      ///< cannot search everywhere or for a unit
 };
 
-class Method {
- public:
-  Method() = default;
-  virtual ~Method() = default;
-  Method(const Method&) = delete;
-  Method& operator=(const Method&) = delete;
-
-  virtual std::string name() const = 0;
-  virtual std::string about() const = 0;  ///< one line
-  virtual Traits traits() const { return {}; }
+struct Method {
+  std::string name;
+  std::string about;  ///< one line
+  Traits traits = {};
+  /// Fills an outcome; may throw InputError.
+  std::function<void(const MethodInput&, MethodOutcome&)> attempt;
   /// All options, in a text that differs when one does; empty where only the source has any.
-  virtual std::string optionsText() const { return {}; }
+  std::string options = {};
+
   /// Registers. Clouds that cannot be used, too, are an outcome without a transform: never an
   /// exception and never the guess handed back. Throws Interrupted.
   MethodOutcome run(const MethodInput& input) const;
-
- protected:
-  /// Fills `outcome`; may throw InputError.
-  virtual void attempt(const MethodInput& input, MethodOutcome& outcome) const = 0;
 };
 
 /// Names of all methods that are built in, the product's first. Its presets take options besides:
 /// `default:KEY=VALUE:KEY=VALUE`.
 std::vector<std::string> methodNames();
 /// Throws UsageError, listing the known names, for an unknown one.
-std::unique_ptr<Method> makeMethod(const std::string& name);
+Method makeMethod(const std::string& name);
 
 /// The method with the true horizontal scales applied to its guess beforehand, about the middle of
 /// the moving cloud, so that its scale is not the reason why it loses. Named `…-oracle-scale`.
-std::unique_ptr<Method> withOracleScale(std::unique_ptr<Method> method);
+Method withOracleScale(Method method);
 
 }  // namespace agricolmap::experiments

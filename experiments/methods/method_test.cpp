@@ -14,9 +14,9 @@ TEST(Methods, NamesAreUniqueAndAllCanBeMade) {
   const std::vector<std::string> names = methodNames();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
   for (const std::string& name : names) {
-    const std::unique_ptr<Method> method = makeMethod(name);
-    EXPECT_EQ(method->name(), name);
-    EXPECT_FALSE(method->about().empty());
+    const Method method = makeMethod(name);
+    EXPECT_EQ(method.name, name);
+    EXPECT_FALSE(method.about.empty());
   }
 }
 
@@ -32,23 +32,10 @@ TEST(Methods, UnknownNamesListTheKnownOnes) {
 }
 
 TEST(Methods, OracleScaleWantsTheTruth) {
-  const std::unique_ptr<Method> method = withOracleScale(makeMethod("default"));
-  EXPECT_EQ(method->name(), "default-oracle-scale");
-  EXPECT_THROW(method->run(testing::inputOf(testing::smallPair(), {}, {})), UsageError);
+  const Method method = withOracleScale(makeMethod("default"));
+  EXPECT_EQ(method.name, "default-oracle-scale");
+  EXPECT_THROW(method.run(testing::inputOf(testing::smallPair(), {}, {})), UsageError);
 }
-
-/// Hands back its guess.
-class Echo : public Method {
- public:
-  std::string name() const override { return "echo"; }
-  std::string about() const override { return "its guess"; }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    EXPECT_FALSE(input.truth.has_value());
-    outcome.fixed_from_moving = input.guess;
-  }
-};
 
 TEST(Methods, OracleScaleMendsScalesAndNothingElse) {
   const simulate::SimulatedPair& pair = testing::smallPair();
@@ -57,7 +44,11 @@ TEST(Methods, OracleScaleMendsScalesAndNothingElse) {
   error.scale = {1.2, 0.8};
   MethodInput input = testing::inputOf(pair, error, {});
   input.truth = pair.best_affine;
-  const MethodOutcome outcome = withOracleScale(std::make_unique<Echo>())->run(input);
+  const Method echo = {"echo", "its guess", {}, [](const MethodInput& given, MethodOutcome& found) {
+                         EXPECT_FALSE(given.truth.has_value());
+                         found.fixed_from_moving = given.guess;
+                       }};
+  const MethodOutcome outcome = withOracleScale(echo).run(input);
   ASSERT_TRUE(outcome.fixed_from_moving.has_value());
   const Eigen::Affine3d expected = Eigen::Translation3d(0.7, -0.3, 0.0) * pair.best_affine;
   for (const std::size_t i : {std::size_t{0}, pair.ugv.size() / 2, pair.ugv.size() - 1}) {
@@ -71,8 +62,8 @@ TEST(Product, DefaultFindsTheStrip) {
   error.shift = {1.5, -0.8};
   error.heading = 0.05;
   error.scale = {1.05, 0.96};
-  testing::expectRight(*makeMethod("default"), error, {});
-  testing::expectFailsOnEmptyMaps(*makeMethod("default"));
+  testing::expectRight(makeMethod("default"), error, {});
+  testing::expectFailsOnEmptyMaps(makeMethod("default"));
 }
 
 TEST(Product, PaperChainFindsTheStripAndSaysItsMatches) {
@@ -86,7 +77,7 @@ TEST(Product, PaperChainFindsTheStripAndSaysItsMatches) {
   MethodInput input = testing::inputOf(pair, error, prior);
   input.truth = pair.best_affine;
   input.right_match = 0.1;
-  const MethodOutcome outcome = makeMethod("paper")->run(input);
+  const MethodOutcome outcome = makeMethod("paper").run(input);
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
   EXPECT_TRUE(testing::errorsOf(outcome, pair).within({}));
   for (const std::string matching : {"matches", "rematches"}) {
@@ -99,7 +90,7 @@ TEST(Product, PaperChainFindsTheStripAndSaysItsMatches) {
 
 TEST(Product, TellsWhatItsProbabilityRestsOn) {
   const MethodOutcome outcome =
-      makeMethod("default")->run(testing::inputOf(testing::smallPair(), {}, {}));
+      makeMethod("default").run(testing::inputOf(testing::smallPair(), {}, {}));
   ASSERT_TRUE(outcome.accepted) << outcome.why;
   for (const char* name :
        {"probability", "plane_probability", "uniqueness", "significance", "agreeing", "blocks",
@@ -111,9 +102,9 @@ TEST(Product, TellsWhatItsProbabilityRestsOn) {
 }
 
 TEST(Product, TakesOptionsAfterItsPreset) {
-  const std::unique_ptr<Method> changed = makeMethod("default:grid.cell=0.03:refine=cpd");
-  EXPECT_EQ(changed->name(), "default:grid.cell=0.03:refine=cpd");
-  EXPECT_NE(changed->optionsText(), makeMethod("default")->optionsText());
+  const Method changed = makeMethod("default:grid.cell=0.03:refine=cpd");
+  EXPECT_EQ(changed.name, "default:grid.cell=0.03:refine=cpd");
+  EXPECT_NE(changed.options, makeMethod("default").options);
   for (const char* wrong : {"default:grid.sell=0.03", "default:grid.cell",
                             "default:", "default:grid.cell=wide", "default:grid.cell=-1"}) {
     EXPECT_THROW(makeMethod(wrong), UsageError) << wrong;
@@ -122,16 +113,16 @@ TEST(Product, TakesOptionsAfterItsPreset) {
 }
 
 TEST(Traits, SayWhatEachMethodIs) {
-  EXPECT_FALSE(makeMethod("default")->traits().needs_guess);
-  EXPECT_FALSE(makeMethod("default")->traits().matches_points);
-  EXPECT_TRUE(makeMethod("paper")->traits().needs_guess);
-  EXPECT_TRUE(makeMethod("paper")->traits().matches_points);
-  EXPECT_TRUE(makeMethod("default:association=flow")->traits().needs_guess);
-  EXPECT_TRUE(makeMethod("go-icp")->traits().slow);
-  EXPECT_TRUE(makeMethod("go-icp")->traits().rigid);
-  EXPECT_TRUE(makeMethod("go-icp-oracle-scale")->traits().slow);
-  EXPECT_FALSE(makeMethod("go-icp-oracle-scale")->traits().rigid);
-  EXPECT_FALSE(makeMethod("icp-affine")->traits().rigid);
+  EXPECT_FALSE(makeMethod("default").traits.needs_guess);
+  EXPECT_FALSE(makeMethod("default").traits.matches_points);
+  EXPECT_TRUE(makeMethod("paper").traits.needs_guess);
+  EXPECT_TRUE(makeMethod("paper").traits.matches_points);
+  EXPECT_TRUE(makeMethod("default:association=flow").traits.needs_guess);
+  EXPECT_TRUE(makeMethod("go-icp").traits.slow);
+  EXPECT_TRUE(makeMethod("go-icp").traits.rigid);
+  EXPECT_TRUE(makeMethod("go-icp-oracle-scale").traits.slow);
+  EXPECT_FALSE(makeMethod("go-icp-oracle-scale").traits.rigid);
+  EXPECT_FALSE(makeMethod("icp-affine").traits.rigid);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace agricolmap::experiments {
 
 class PlainCorrelation {
  public:
-  /// `most_rows`, `most_cols`: of the pieces to come. `least_energy`: as in FftAffineOptions.
+  /// `most_rows`, `most_cols`: of the pieces to come. `least_energy`: of the fixed map under a
+  /// piece, in its mean; keeps off the rim.
   PlainCorrelation(const map::SignalMap& fixed, int most_rows, int most_cols, double least_energy);
 
   /// A piece of the moving map at the fixed map's cell size; element (r, c) stands at the row and
@@ -29,8 +30,6 @@ class PlainCorrelation {
   };
   /// The best shift with the anchor within `reach` [m] of `centre`.
   Peak best(const Piece& piece, const Eigen::Vector2d& centre, double reach) const;
-  int mostRows() const { return most_rows_; }
-  int mostCols() const { return most_cols_; }
 
  private:
   correlation::ComplexRaster spectrumOf(const Raster<float>& values, int first_row,

@@ -42,40 +42,12 @@ void change(pipeline::RegistrationOptions& options, const std::string& name) {
   }
 }
 
-class Product : public Method {
- public:
-  explicit Product(std::string name) : name_(std::move(name)) { optionsFor({}); }
-  std::string name() const override { return name_; }
-  std::string about() const override {
-    return name_ == presetOf(name_) ? "the product's preset" : "the product's preset, changed";
-  }
-  Traits traits() const override {
-    const bool flow = optionsFor({}).association == pipeline::AssociationKind::kFlow;
-    return {.matches_points = flow, .needs_guess = flow};
-  }
-  std::string optionsText() const override {
-    pipeline::RegistrationOptions options = optionsFor({});
-    return config::dumpYaml(optionTable(options));
-  }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    const pipeline::RegistrationOptions options = optionsFor(input.prior);
-    const pipeline::Registration result =
-        pipeline::registerClouds(input.fixed, input.moving, input.guess, options, outcome.times);
-    fillFrom(result, input, options.association == pipeline::AssociationKind::kFlow, outcome);
-  }
-
- private:
-  pipeline::RegistrationOptions optionsFor(const PriorUncertainty& prior) const {
-    pipeline::RegistrationOptions options = pipeline::preset(presetOf(name_));
-    options.prior = prior;
-    change(options, name_);
-    return options;
-  }
-
-  std::string name_;
-};
+pipeline::RegistrationOptions optionsOf(const std::string& name, const PriorUncertainty& prior) {
+  pipeline::RegistrationOptions options = pipeline::preset(presetOf(name));
+  options.prior = prior;
+  change(options, name);
+  return options;
+}
 
 /// Of the offsets of the blocks that agree [m].
 double blockRms(const verdict::Evidence& evidence) {
@@ -141,10 +113,22 @@ std::vector<std::string> productNames() {
   return names;
 }
 
-std::unique_ptr<Method> makeProduct(const std::string& name) {
+std::optional<Method> makeProduct(const std::string& name) {
   const std::vector<std::string> presets = pipeline::presetNames();
-  if (std::find(presets.begin(), presets.end(), presetOf(name)) == presets.end()) return nullptr;
-  return std::make_unique<Product>(name);
+  if (std::find(presets.begin(), presets.end(), presetOf(name)) == presets.end()) return {};
+  pipeline::RegistrationOptions usual = optionsOf(name, {});
+  const bool flow = usual.association == pipeline::AssociationKind::kFlow;
+  Method method;
+  method.name = name;
+  method.about = name == presetOf(name) ? "the product's preset" : "the product's preset, changed";
+  method.traits = {.matches_points = flow, .needs_guess = flow};
+  method.options = config::dumpYaml(optionTable(usual));
+  method.attempt = [name, flow](const MethodInput& input, MethodOutcome& outcome) {
+    const pipeline::Registration result = pipeline::registerClouds(
+        input.fixed, input.moving, input.guess, optionsOf(name, input.prior), outcome.times);
+    fillFrom(result, input, flow, outcome);
+  };
+  return method;
 }
 
 }  // namespace agricolmap::experiments

@@ -1,7 +1,7 @@
 // The product's presets as methods.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +13,9 @@ namespace agricolmap::experiments {
 
 /// The presets, and those that the paper's Tab. IV compares.
 std::vector<std::string> productNames();
-/// A preset or `PRESET:KEY=VALUE:…`, which changes its options. nullptr for a name that does not
+/// A preset or `PRESET:KEY=VALUE:…`, which changes its options. Nothing for a name that does not
 /// begin with a preset. Throws UsageError for a setting that no option takes.
-std::unique_ptr<Method> makeProduct(const std::string& name);
+std::optional<Method> makeProduct(const std::string& name);
 
 /// Fills `outcome` from what the pipeline found; `accepted` is its verdict. `has_matches`: the
 /// association matched points.

@@ -2,62 +2,55 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <functional>
-#include <utility>
-
 #include "agricolmap/core/error.hpp"
-#include "experiments/methods/cpd_affine.hpp"
-#include "experiments/methods/fft_affine.hpp"
-#include "experiments/methods/go_icp/go_icp.hpp"
-#include "experiments/methods/icp_affine.hpp"
 #include "experiments/methods/method.hpp"
+#include "experiments/methods/peers.hpp"
 #include "experiments/methods/product.hpp"
-#ifdef AGRICOLMAP_LIBRARY_PEERS
-#include "experiments/methods/features/feature_chain.hpp"
-#include "experiments/methods/features/opencv_features.hpp"
-#include "experiments/methods/features/surf_features.hpp"
-#include "experiments/methods/fpfh/fpfh_gicp.hpp"
-#include "experiments/methods/sift_affine.hpp"
-#endif
 
 namespace agricolmap::experiments {
 namespace {
 
-using Maker = std::function<std::unique_ptr<Method>()>;
-
-/// The peers, in the order in which they are listed. Those of OpenCV, dlib and Open3D only where
-/// these are built in.
-std::vector<std::pair<std::string, Maker>> peers() {
-  return {
-      {"icp-affine", [] { return makeIcpAffine(); }},
-      {"cpd-affine", [] { return makeCpdAffine(); }},
-      {"go-icp", [] { return makeGoIcp(); }},
-      {"go-icp-oracle-scale", [] { return withOracleScale(makeGoIcp()); }},
-      {"fft-affine", [] { return makeFftAffine(); }},
+/// In the order in which they are listed. Those of OpenCV, dlib and Open3D only where these are
+/// built in.
+std::vector<Method> peers() {
+  const Traits slow_and_rigid = {.slow = true, .rigid = true};
+  const Method go_icp = {"go-icp", "rigid branch and bound on the vegetation points",
+                         slow_and_rigid, goIcp};
+  std::vector<Method> all = {
+      {"icp-affine", "affine ICP on the vegetation points", {}, icpAffine},
+      {"cpd-affine", "affine coherent point drift on the vegetation points", {}, cpdAffine},
+      go_icp,
+      withOracleScale(go_icp),
+      {"fft-affine", "exhaustive FFT correlation, then dense Gauss-Newton", {}, fftAffine}};
 #ifdef AGRICOLMAP_LIBRARY_PEERS
-      {"surf", [] { return makeFeatureChain(makeSurf(), "the paper's chain on SURF"); }},
-      {"orb", [] { return makeFeatureChain(makeOrb(), "the paper's chain on ORB"); }},
-      {"fast-brief",
-       [] { return makeFeatureChain(makeFastBrief(), "the paper's chain on FAST and BRIEF"); }},
-      {"sift-affine", [] { return makeSiftAffine(); }},
-      {"fpfh-gicp", [] { return makeFpfhGicp(); }},
-      {"fpfh-gicp-oracle-scale", [] { return withOracleScale(makeFpfhGicp()); }},
+  const Traits matching = {.matches_points = true};
+  const Method fpfh = {"fpfh-gicp",
+                       "FPFH, fast global registration, generalised ICP (Open3D)",
+                       {.rigid = true},
+                       fpfhGicp};
+  all.insert(all.end(),
+             {{"surf", "the paper's chain on SURF", matching, surfChain},
+              {"orb", "the paper's chain on ORB", matching, orbChain},
+              {"fast-brief", "the paper's chain on FAST and BRIEF", matching, fastBriefChain},
+              {"sift-affine", "SIFT and an affine by USAC with MAGSAC++", matching, siftAffine},
+              fpfh,
+              withOracleScale(fpfh)});
 #endif
-  };
+  return all;
 }
 
 }  // namespace
 
 std::vector<std::string> methodNames() {
   std::vector<std::string> names = productNames();
-  for (const auto& [name, make] : peers()) names.push_back(name);
+  for (const Method& peer : peers()) names.push_back(peer.name);
   return names;
 }
 
-std::unique_ptr<Method> makeMethod(const std::string& name) {
-  if (std::unique_ptr<Method> product = makeProduct(name)) return product;
-  for (const auto& [known, make] : peers()) {
-    if (known == name) return make();
+Method makeMethod(const std::string& name) {
+  if (const std::optional<Method> product = makeProduct(name)) return *product;
+  for (Method& peer : peers()) {
+    if (peer.name == name) return std::move(peer);
   }
   throw UsageError(
       fmt::format("unknown method '{}'; there are: {}", name, fmt::join(methodNames(), ", ")));

@@ -1,5 +1,4 @@
-#include "experiments/methods/sift_affine.hpp"
-
+// SIFT and a robust affine: what OpenCV offers for laying one picture of the ground on another.
 #include <fmt/format.h>
 
 #include <opencv2/calib3d.hpp>
@@ -7,10 +6,18 @@
 #include <optional>
 #include <utility>
 
+#include "experiments/methods/features/features.hpp"
 #include "experiments/methods/peer_maps.hpp"
+#include "experiments/methods/peers.hpp"
 
 namespace agricolmap::experiments {
 namespace {
+
+constexpr double kRatio = 0.9;      // Lowe: 0.8, which leaves too few where all plants are alike
+constexpr double kThreshold = 3.0;  // of an inlier [cells]; library default
+constexpr std::size_t kIterations = 100000;  // at most; few of the matches are right (our choice)
+constexpr double kConfidence = 0.999;        // library examples
+constexpr std::size_t kLeast = 10;           // inliers to stand by the result; library's tutorial
 
 /// An affine and how many matches agree with it.
 struct RobustFit {
@@ -19,8 +26,7 @@ struct RobustFit {
 };
 
 /// By USAC; about the middle of the matches, in cells, so that floats lose nothing.
-std::optional<RobustFit> fitRobustly(const std::vector<Match>& matches, double cell,
-                                     const SiftAffineOptions& options) {
+std::optional<RobustFit> fitRobustly(const std::vector<Match>& matches, double cell) {
   if (matches.size() < 3) return std::nullopt;
   Eigen::Vector2d from = Eigen::Vector2d::Zero();
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
@@ -37,9 +43,8 @@ std::optional<RobustFit> fitRobustly(const std::vector<Match>& matches, double c
     targets.emplace_back(q.x(), q.y());
   }
   cv::Mat inliers;
-  const cv::Mat fit =
-      cv::estimateAffine2D(sources, targets, inliers, cv::USAC_MAGSAC, options.threshold,
-                           static_cast<std::size_t>(options.iterations), options.confidence);
+  const cv::Mat fit = cv::estimateAffine2D(sources, targets, inliers, cv::USAC_MAGSAC, kThreshold,
+                                           kIterations, kConfidence);
   if (fit.empty()) return std::nullopt;
   RobustFit result;
   for (int r = 0; r < 2; ++r) {
@@ -51,52 +56,32 @@ std::optional<RobustFit> fitRobustly(const std::vector<Match>& matches, double c
   return result;
 }
 
-class SiftAffine : public Method {
- public:
-  explicit SiftAffine(const SiftAffineOptions& options)
-      : options_(options), extractor_(makeSift(options.sift)) {}
-  std::string name() const override { return "sift-affine"; }
-  std::string about() const override { return "SIFT and an affine by USAC with MAGSAC++"; }
-
-  Traits traits() const override { return {.matches_points = true}; }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    const PeerMaps maps = makePeerMaps(input, outcome.times);
-    Features fixed;
-    Features moving;
-    outcome.times.run("detect", [&] {
-      fixed = extractor_->extract(exgImage(maps.fixed));
-      moving = extractor_->extract(exgImage(maps.moving));
-    });
-    const std::vector<Match> matches = outcome.times.run("match", [&] {
-      return matchFeatures(fixed, maps.fixed.frame, moving, maps.moving.frame, maps.space,
-                           {.ratio = options_.ratio});
-    });
-    const std::optional<RobustFit> fit = outcome.times.run(
-        "affine", [&] { return fitRobustly(matches, maps.moving.frame.cell, options_); });
-    addMatches("matches", maps.frames, input, matches, static_cast<double>(fit ? fit->inliers : 0),
-               outcome);
-    if (!fit || !(fit->pose.linear().determinant() > 0.0)) {
-      outcome.why = fmt::format("{} matches determine no affine", matches.size());
-      return;
-    }
-    outcome.accepted = fit->inliers >= static_cast<std::size_t>(options_.least);
-    if (!outcome.accepted) {
-      outcome.why = fmt::format("only {} of {} matches agree", fit->inliers, matches.size());
-    }
-    setPlanePose(maps, input, fit->pose, outcome);
-  }
-
- private:
-  SiftAffineOptions options_;
-  std::unique_ptr<FeatureExtractor> extractor_;
-};
-
 }  // namespace
 
-std::unique_ptr<Method> makeSiftAffine(const SiftAffineOptions& options) {
-  return std::make_unique<SiftAffine>(options);
+void siftAffine(const MethodInput& input, MethodOutcome& outcome) {
+  const PeerMaps maps = makePeerMaps(input, outcome.times);
+  Features fixed;
+  Features moving;
+  outcome.times.run("detect", [&] {
+    fixed = siftFeatures(exgImage(maps.fixed));
+    moving = siftFeatures(exgImage(maps.moving));
+  });
+  const std::vector<Match> matches = outcome.times.run("match", [&] {
+    return matchFeatures(fixed, maps.fixed.frame, moving, maps.moving.frame, maps.space, kRatio);
+  });
+  const std::optional<RobustFit> fit =
+      outcome.times.run("affine", [&] { return fitRobustly(matches, maps.moving.frame.cell); });
+  addMatches("matches", maps.frames, input, matches, static_cast<double>(fit ? fit->inliers : 0),
+             outcome);
+  if (!fit || !(fit->pose.linear().determinant() > 0.0)) {
+    outcome.why = fmt::format("{} matches determine no affine", matches.size());
+    return;
+  }
+  outcome.accepted = fit->inliers >= kLeast;
+  if (!outcome.accepted) {
+    outcome.why = fmt::format("only {} of {} matches agree", fit->inliers, matches.size());
+  }
+  setPlanePose(maps, input, fit->pose, outcome);
 }
 
 }  // namespace agricolmap::experiments

@@ -1,4 +1,3 @@
-#include "experiments/methods/sift_affine.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,10 +13,10 @@ TEST(SiftAffine, IsRightFromNearby) {
   prior.translation = 0.5;
   prior.heading_deg = 1.0;
   prior.scale = 0.02;
-  testing::expectRight(*makeSiftAffine(), error, prior);
+  testing::expectRight(makeMethod("sift-affine"), error, prior);
 }
 
-TEST(SiftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeSiftAffine()); }
+TEST(SiftAffine, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(makeMethod("sift-affine")); }
 
 }  // namespace
 }  // namespace agricolmap::experiments

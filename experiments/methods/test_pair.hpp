@@ -61,9 +61,9 @@ inline evaluate::RegistrationErrors errorsOf(const MethodOutcome& outcome,
 inline void expectRight(const Method& method, const GuessError& error,
                         const PriorUncertainty& prior) {
   const MethodOutcome outcome = method.run(inputOf(smallPair(), error, prior));
-  ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << method.name() << ": " << outcome.why;
+  ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << method.name << ": " << outcome.why;
   const evaluate::RegistrationErrors errors = errorsOf(outcome, smallPair());
-  EXPECT_TRUE(errors.within({})) << method.name() << ": RMS " << errors.rms << " m ("
+  EXPECT_TRUE(errors.within({})) << method.name << ": RMS " << errors.rms << " m ("
                                  << errors.rms_horizontal << " horizontal), e_t "
                                  << errors.translation << " m, e_r " << errors.rotation
                                  << " rad, e_s " << errors.scale << " " << outcome.why;
@@ -73,7 +73,7 @@ inline void expectRight(const Method& method, const GuessError& error,
 inline void expectLost(const Method& method, const GuessError& error) {
   const MethodOutcome outcome = method.run(inputOf(smallPair(), error, {}));
   if (outcome.fixed_from_moving) {
-    EXPECT_FALSE(errorsOf(outcome, smallPair()).within({})) << method.name();
+    EXPECT_FALSE(errorsOf(outcome, smallPair()).within({})) << method.name;
   }
 }
 
@@ -85,7 +85,7 @@ inline void expectFailsOnEmptyMaps(const Method& method) {
   MethodInput input{.fixed = none, .moving = pair.ugv, .guess = pair.best_affine};
   input.truth = pair.best_affine;
   const MethodOutcome empty = method.run(input);
-  EXPECT_FALSE(empty.fixed_from_moving.has_value()) << method.name();
+  EXPECT_FALSE(empty.fixed_from_moving.has_value()) << method.name;
   EXPECT_FALSE(empty.accepted);
   EXPECT_NE(empty.why.find("none.ply"), std::string::npos) << empty.why;
   // The strip lies far outside the fixed map.
@@ -93,7 +93,7 @@ inline void expectFailsOnEmptyMaps(const Method& method) {
   MethodInput outside{.fixed = pair.uav, .moving = pair.ugv, .guess = away};
   outside.truth = pair.best_affine;
   const MethodOutcome nothing = method.run(outside);
-  EXPECT_FALSE(nothing.fixed_from_moving.has_value()) << method.name();
+  EXPECT_FALSE(nothing.fixed_from_moving.has_value()) << method.name;
   EXPECT_FALSE(nothing.why.empty());
 }
 

@@ -5,20 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string_view>
 
 #include "agricolmap/core/affine_fit.hpp"
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/io/text/text.hpp"
 #include "experiments/pairs/hash.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::string_view kNoGuess = "none";
-constexpr std::string_view kAnyUnit = ",unit";
 
 double randomSign(Random& random) { return random.chance(0.5) ? 1.0 : -1.0; }
 
@@ -67,35 +62,10 @@ void transformCloud(Cloud& cloud, const Eigen::Affine3d& moved_from_file) {
 }
 
 std::string toldText(const PriorUncertainty& told) {
-  std::string text = told.anywhere() ? std::string(kNoGuess)
-                                     : fmt::format("{:.6g},{:.6g},{:.6g}", told.translation,
-                                                   told.heading_deg, 100.0 * told.scale);
-  if (told.scale_unknown) text += kAnyUnit;
-  return text;
-}
-
-PriorUncertainty parseTold(const std::string& text) {
-  std::string_view rest = text;
-  const bool any_unit = rest.ends_with(kAnyUnit);
-  if (any_unit) rest.remove_suffix(kAnyUnit.size());
-  PriorUncertainty told = rest == kNoGuess ? PriorUncertainty::none() : PriorUncertainty{};
-  told.scale_unknown = any_unit;
-  if (rest == kNoGuess) return told;
-  double percent = 0.0;
-  double* const numbers[] = {&told.translation, &told.heading_deg, &percent};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t comma = rest.find(',');
-    const auto number = io::parseNumber(rest.substr(0, comma));
-    if (!number || (comma == std::string_view::npos) != (i == 2)) {
-      throw UsageError(fmt::format(
-          "'{}': needs T_M,HEADING_DEG,SCALE_PERCENT such as 5,11.5,30, or none", text));
-    }
-    *numbers[i] = *number;
-    rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
-  }
-  told.scale = percent / 100.0;
-  checkOptions(told);
-  return told;
+  const std::string limits = told.anywhere() ? "none"
+                                             : fmt::format("{:.6g},{:.6g},{:.6g}", told.translation,
+                                                           told.heading_deg, 100.0 * told.scale);
+  return limits + (told.scale_unknown ? ",unit" : "");
 }
 
 }  // namespace agricolmap::experiments

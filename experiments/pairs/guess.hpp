@@ -31,9 +31,7 @@ Eigen::Affine3d wrongGuess(const std::string& suite, const AddedError& error, in
 /// Moves the points of a cloud within its file's coordinates.
 void transformCloud(Cloud& cloud, const Eigen::Affine3d& moved_from_file);
 
-/// `T_M,HEADING_DEG,SCALE_PERCENT` or `none`, and `,unit` where that is unknown.
+/// `T_M,HEADING_DEG,SCALE_PERCENT`, or `none` for no guess; `,unit` where the file's is unknown.
 std::string toldText(const PriorUncertainty& told);
-/// Reads it back. Throws UsageError.
-PriorUncertainty parseTold(const std::string& text);
 
 }  // namespace agricolmap::experiments

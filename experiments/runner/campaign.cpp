@@ -72,7 +72,7 @@ class Batch {
       known.push_back(row);
       const std::lock_guard lock(mutex_);
       table_.append(row);
-      progress_.done(row);
+      progress_.done();
     }
   }
 
@@ -84,7 +84,7 @@ class Batch {
     for (std::size_t i = 0; i < earlier_; ++i) {
       const Row& row = table_.rows()[i];
       const bool other = row.case_name != chain.chosen->name || row.seed != job_.seed;
-      if (other && row.method == chain.method->name()) rows.push_back(row);
+      if (other && row.method == chain.method->name) rows.push_back(row);
     }
     return rows;
   }
@@ -92,7 +92,7 @@ class Batch {
   void runOrSkip(const Chain& chain, std::size_t i, const std::vector<Row>& known,
                  const std::string& name, Row& row) {
     const AddedError* error = chain.errors[i];
-    if (error != nullptr && cannotBeRight(chain.method->traits(), *error)) {
+    if (error != nullptr && cannotBeRight(chain.method->traits, *error)) {
       row.status = "skipped";
       row.message = "rigid";
     } else if (hopeless(known, chain, i)) {
@@ -150,7 +150,9 @@ bool runCampaign(const CampaignScope& scope, const CampaignOptions& options, Pai
                  RowTable& table) {
   const std::vector<Job> jobs = planCampaign(scope, table);
   const Stopwatch watch;
-  Progress progress(scope, jobs, options.jobs, table);
+  std::size_t runs_left = 0;
+  for (const Job& job : jobs) runs_left += job.runs;
+  Progress progress(runs_left);
   // In process the limit that is in force, of all cores or fewer.
   const int threads_each = options.runs.in_process
                                ? static_cast<int>(tbb::global_control::active_value(
@@ -159,7 +161,7 @@ bool runCampaign(const CampaignScope& scope, const CampaignOptions& options, Pai
   for (const Job& job : jobs) {
     if (options.stop_after > 0.0 && watch.seconds() > options.stop_after) return false;
     throwIfInterrupted();
-    progress.now(job.chosen->name, job.seed);
+    progress.now(fmt::format("{} seed {}", job.chosen->name, job.seed));
     std::optional<ScratchFolder> scratch;
     if (!options.runs.in_process) scratch.emplace(options.scratch);
     const Stopwatch making;

@@ -13,29 +13,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <typename Matrix>
-Json matrixJson(const Matrix& matrix) {
-  Json rows = Json::array();
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    Json row = Json::array();
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) row.push_back(matrix(r, c));
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
 /// JSON has no NaN: null stands for it.
 double numberFrom(const Json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
+/// Column by column.
 template <typename Matrix>
-void matrixFrom(const Json& rows, Matrix& matrix) {
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
-      matrix(r, c) =
-          numberFrom(rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c)));
-    }
+Json matrixJson(const Matrix& matrix) {
+  return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
+}
+template <typename Matrix>
+void matrixFrom(const Json& values, Matrix& matrix) {
+  for (Eigen::Index i = 0; i < matrix.size(); ++i) {
+    matrix.data()[i] = numberFrom(values.at(static_cast<std::size_t>(i)));
   }
 }
 

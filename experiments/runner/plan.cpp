@@ -20,13 +20,6 @@ constexpr std::size_t kLostSettings = 3;
 constexpr std::size_t kLostRuns = 6;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// What is asked of a method again and again.
-struct Known {
-  const Method* method;
-  Traits traits;
-  std::uint64_t options;
-};
-
 bool takesPart(const Suite& suite, const Case& chosen, const Traits& traits) {
   if (suite.matching_only && !traits.matches_points) return false;
   return !traits.needs_guess || (!chosen.told.anywhere() && !chosen.told.scale_unknown);
@@ -67,9 +60,6 @@ class Planner {
         texts_[&one] = one.text();
       }
     }
-    for (const auto& method : scope.methods) {
-      methods_.push_back({method.get(), method->traits(), hashText(method->optionsText())});
-    }
   }
 
   std::vector<Job> plan() {
@@ -84,7 +74,6 @@ class Planner {
       const int next = std::min(end, (seed / together_ + 1) * together_);
       for (const bool slow : {false, true}) {
         std::vector<Job> round = roundOf(seed, next, slow);
-        if (together_ > 1) groupByFlight(round);
         std::move(round.begin(), round.end(), std::back_inserter(jobs));
       }
       seed = next;
@@ -96,19 +85,16 @@ class Planner {
   /// The jobs of seeds from `begin` to before `end`.
   std::vector<Job> roundOf(int begin, int end, bool slow) {
     std::vector<Job> round;
-    std::map<std::pair<std::string, int>, std::size_t> places;
     for (const Suite& suite : scope_.suites) {
       for (const Case& chosen : suite.cases) {
         for (int seed = begin; seed < end; ++seed) {
           if (!has(suite, chosen, seed)) continue;
-          std::vector<Chain> chains = chainsLeft(suite, chosen, seed, slow);
-          if (chains.empty()) continue;
-          const auto [at, is_new] = places.emplace(std::pair(texts_[&chosen], seed), round.size());
-          if (is_new) round.push_back({&chosen, seed, {}});
-          std::move(chains.begin(), chains.end(), std::back_inserter(round[at->second].chains));
+          Job job = jobLeft(suite, chosen, seed, slow);
+          if (job.runs > 0) round.push_back(std::move(job));
         }
       }
     }
+    groupByFlight(round);
     return round;
   }
 
@@ -118,20 +104,20 @@ class Planner {
     return number >= 0 && number < suite.pairs && within;
   }
 
-  std::vector<Chain> chainsLeft(const Suite& suite, const Case& chosen, int seed, bool slow) {
-    std::vector<Chain> left;
-    for (const Known& one : methods_) {
-      if (one.traits.slow != slow || !takesPart(suite, chosen, one.traits)) continue;
-      const std::uint64_t options =
-          hashText(fmt::format("{:016x} {}", one.options, texts_[&chosen]));
-      for (Chain& chain : chainsOf(suite, chosen, *one.method, options)) {
-        const auto undone =
+  Job jobLeft(const Suite& suite, const Case& chosen, int seed, bool slow) {
+    Job job{&chosen, seed, {}};
+    for (const Method& method : scope_.methods) {
+      if (method.traits.slow != slow || !takesPart(suite, chosen, method.traits)) continue;
+      const std::uint64_t options = hashText(texts_[&chosen] + method.options);
+      for (Chain& chain : chainsOf(suite, chosen, method, options)) {
+        const auto left =
             std::count_if(chain.errors.begin(), chain.errors.end(),
                           [&](const AddedError* error) { return !isDone(chain, error, seed); });
-        if (undone > 0) left.push_back(std::move(chain));
+        job.runs += static_cast<std::size_t>(left);
+        if (left > 0) job.chains.push_back(std::move(chain));
       }
     }
-    return left;
+    return job;
   }
 
   bool isDone(const Chain& chain, const AddedError* error, int seed) const {
@@ -151,7 +137,6 @@ class Planner {
   const RowTable& table_;
   int together_ = 1;
   std::map<const Case*, std::string> texts_;
-  std::vector<Known> methods_;
 };
 
 }  // namespace
@@ -172,7 +157,7 @@ Row rowFor(const CampaignScope& scope, const Chain& chain, const AddedError* err
   row.guess_translation = error == nullptr ? geotag.translation : error->translation;
   row.guess_heading = error == nullptr ? geotag.heading_deg * kDegree : error->heading;
   row.told = toldText(toldFor(chain, error));
-  row.method = chain.method->name();
+  row.method = chain.method->name;
   row.source = scope.source;
   row.options = fmt::format(
       "{:016x}", hashText(fmt::format("{:016x} {} {:g} {:g} {:g} {:g}", chain.options, row.told,
@@ -200,7 +185,7 @@ bool hopeless(const std::vector<Row>& rows, const Chain& chain, std::size_t next
     const AddedError& error = *chain.errors[i];
     bool own = false;
     for (const Row& row : rows) {
-      if (row.method != chain.method->name() || row.suite != chain.suite->name ||
+      if (row.method != chain.method->name || row.suite != chain.suite->name ||
           row.kind != kindOf(chain.chosen->source) || row.guess_scale != error.scale ||
           row.setting != error.setting) {
         continue;

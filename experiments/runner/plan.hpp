@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,9 @@ namespace agricolmap::experiments {
 
 /// What a campaign consists of.
 struct CampaignScope {
-  std::vector<Suite> suites;
-  std::vector<std::unique_ptr<Method>> methods;
-  std::string source;       ///< of the program
+  std::vector<Suite> suites = {};
+  std::vector<Method> methods = {};
+  std::string source = {};  ///< of the program
   double time_limit = 0.0;  ///< of a child [s]; 0 in process
 };
 
@@ -36,6 +35,7 @@ struct Job {
   const Case* chosen;
   int seed;
   std::vector<Chain> chains;
+  std::size_t runs = 0;  ///< of them, left
 };
 
 /// The row of a run before anything came of it.
@@ -45,8 +45,8 @@ Row rowFor(const CampaignScope& scope, const Chain& chain, const AddedError* err
 PriorUncertainty toldFor(const Chain& chain, const AddedError* error);
 
 /// All jobs, block of seeds by block of seeds, so that an interrupted campaign has all cases: slow
-/// methods last in a block, pairs of one drone's view together, suites of the same pairs in one
-/// job. Throws InputError when the table has a row of one of the runs from other options.
+/// methods last in a block, pairs of one drone's view together, so that it is made once. Throws
+/// InputError when the table has a row of one of the runs from other options.
 std::vector<Job> planCampaign(const CampaignScope& scope, const RowTable& table);
 
 /// Whether the method, a rigid one, leaves the whole scale error of the guess, and that alone is

@@ -118,14 +118,13 @@ void chooseCases(const Arguments& arguments, PairMaker& maker, std::vector<Suite
   if (left == 0) throw InputError("no case is left to run");
 }
 
-std::vector<std::unique_ptr<Method>> methodsOf(const Arguments& arguments,
-                                               const std::vector<Suite>& suites) {
+std::vector<Method> methodsOf(const Arguments& arguments, const std::vector<Suite>& suites) {
   std::vector<std::string> names = arguments.methods;
   // With errors of its own a suite compares all methods, else the presets.
   const bool compares = !suites.front().curves.empty();
   if (names.empty())
     names = compares ? methodNames() : std::vector<std::string>{"default", "paper"};
-  std::vector<std::unique_ptr<Method>> methods;
+  std::vector<Method> methods;
   for (const std::string& name : names) methods.push_back(makeMethod(name));
   return methods;
 }
@@ -174,7 +173,7 @@ void runAll(const Arguments& arguments) {
 void list(const std::string& what, const Arguments& arguments) {
   if (what == "methods") {
     for (const std::string& name : methodNames()) {
-      fmt::print("{:<32} {}\n", name, makeMethod(name)->about());
+      fmt::print("{:<32} {}\n", name, makeMethod(name).about);
     }
   } else if (what == "suites") {
     for (const std::string& name : suiteNames()) {

@@ -1,5 +1,8 @@
 #include "experiments/runner/register_one.hpp"
 
+#include <fmt/format.h>
+
+#include <memory>
 #include <string>
 
 #include "agricolmap/core/parallel.hpp"
@@ -8,7 +11,6 @@
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/pairs/guess.hpp"
 #include "experiments/runner/outcome_file.hpp"
 #include "experiments/runner/run_pair.hpp"
 
@@ -20,7 +22,7 @@ struct Arguments {
   std::string fixed;
   std::string moving;
   std::string guess;
-  std::string told;
+  PriorUncertainty told;
   std::string truth;
   double time_limit = 600.0;
   int threads = 0;
@@ -29,19 +31,22 @@ struct Arguments {
 };
 
 void registerOne(const Arguments& arguments, double idle_mib) {
-  const std::unique_ptr<Method> method = makeMethod(arguments.method);
+  const Method method = makeMethod(arguments.method);
   io::StagedFile output(arguments.output, arguments.overwrite);
   const ThreadLimit limit(arguments.threads);
   const Stopwatch reading;
   const Cloud fixed = io::readCloud(arguments.fixed);
   const Cloud moving = io::readCloud(arguments.moving);
   Answer answer{.read_s = reading.seconds(), .idle_mib = idle_mib};
-  MethodInput input{.fixed = fixed, .moving = moving, .time_limit = arguments.time_limit};
-  if (!arguments.told.empty()) input.prior = parseTold(arguments.told);
+  MethodInput input{.fixed = fixed,
+                    .moving = moving,
+                    .prior = arguments.told,
+                    .time_limit = arguments.time_limit};
+  checkOptions(input.prior);
   if (!arguments.guess.empty()) input.guess = io::readMatrix(arguments.guess);
   if (!arguments.truth.empty()) input.truth = io::readTransform(arguments.truth);
   const Stopwatch running;
-  answer.outcome = method->run(input);
+  answer.outcome = method.run(input);
   answer.run_s = running.seconds();
   answer.peak_mib = peakMemory();
   io::writeText(output.path(), toJson(answer, arguments.method));
@@ -58,9 +63,12 @@ void addRegisterOne(CLI::App& app, double idle_mib, std::function<void()>& actio
   verb->add_option("MOVING", arguments->moving, "The robot's cloud")->required();
   verb->add_option("--guess", arguments->guess,
                    "Initial guess, 4x4 text, moving -> fixed file coordinates [identity]");
-  verb->add_option("--prior-sigma", arguments->told,
-                   "How wrong it may be: T_M,HEADING_DEG,SCALE_PERCENT, or none; with ,unit where\n"
-                   "the moving file's unit is unknown [5,11.5,30]");
+  verb->add_option("--prior-translation", arguments->told.translation,
+                   fmt::format("How wrong it may be; {:g}: anywhere [5 m]", kAnywhere));
+  verb->add_option("--prior-heading", arguments->told.heading_deg, "Likewise [11.5 deg]");
+  verb->add_option("--prior-scale", arguments->told.scale, "Likewise, relative [0.3]");
+  verb->add_flag("--scale-unknown", arguments->told.scale_unknown,
+                 "The moving file's unit is unknown");
   verb->add_option("--true-transform", arguments->truth,
                    "The truth: for the scales of oracle variants, and to count right matches");
   verb->add_option("--time-limit", arguments->time_limit,

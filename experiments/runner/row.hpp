@@ -33,14 +33,15 @@ struct Row {
   double guess_scale = 0.0;  ///< scale error that the suite adds to the moving cloud's x and y
   int field = 0;             ///< pairs of one field are not independent: keep them in one fold
   bool negative = false;     ///< the clouds have nothing in common: no answer can be right
-  /// How wrong the guess is [m]: exactly, or at most, where the case draws it (no guess, --uniform).
+  /// How wrong the guess is [m]: exactly, or at most, where the case draws it (no guess,
+  /// --uniform).
   double guess_translation = kNotKnown;
   double guess_heading = kNotKnown;  ///< likewise [rad]
-  /// How wrong the method is told that it may be: `T_M;HEADING_DEG;SCALE_%`, or `none` for no guess;
-  /// with `;unit` where the file's unit is unknown.
+  /// How wrong the method is told that it may be: `T_M;HEADING_DEG;SCALE_%`, or `none` for no
+  /// guess; with `;unit` where the file's unit is unknown.
   std::string told;
-  std::string method;  ///< preset, preset with options (`default:grid.cell=0.03`), or peer
-  int threads = 0;     ///< that it might use
+  std::string method;       ///< preset, preset with options (`default:grid.cell=0.03`), or peer
+  int threads = 0;          ///< that it might use
   bool in_process = false;  ///< else as a child, whose wall time and memory these are
 
   // What came of it.

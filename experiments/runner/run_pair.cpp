@@ -127,13 +127,21 @@ std::optional<MethodOutcome> PairRuns::runChildOf(const Method& method, const Mo
   const std::filesystem::path result = folder_ / (name + ".json");
   const std::filesystem::path log = folder_ / (name + ".log");
   io::writeMatrix(guess, guessFor(start), "initial guess, moving file -> fixed file");
-  const ChildResult child = runChild(
-      {options_.program.string(), "register-one", method.name(), (folder_ / "fixed.ply").string(),
-       moving.cloud_file.string(), "--guess", guess.string(), "--true-transform",
-       moving.truth_file.string(), "--prior-sigma", toldText(start.told), "--time-limit",
-       fmt::format("{:.3f}", kSoftShare * options_.time_limit), "--threads",
-       fmt::format("{}", options_.threads), "--overwrite", "-o", result.string()},
-      options_.time_limit, log);
+  std::vector<std::string> command = {options_.program.string(), "register-one", method.name,
+                                      (folder_ / "fixed.ply").string(), moving.cloud_file.string()};
+  const auto give = [&](const std::string& flag, const std::string& value) {
+    command.insert(command.end(), {flag, value});
+  };
+  give("--guess", guess.string());
+  give("--true-transform", moving.truth_file.string());
+  give("--prior-translation", fmt::format("{}", start.told.translation));
+  give("--prior-heading", fmt::format("{}", start.told.heading_deg));
+  give("--prior-scale", fmt::format("{}", start.told.scale));
+  if (start.told.scale_unknown) command.emplace_back("--scale-unknown");
+  give("--time-limit", fmt::format("{:.3f}", kSoftShare * options_.time_limit));
+  give("--threads", fmt::format("{}", options_.threads));
+  give("--output", result.string());
+  const ChildResult child = runChild(command, options_.time_limit, log);
   row.wall_s = child.wall_s;
   row.cpu_s = child.cpu_s;
   std::optional<MethodOutcome> outcome;
@@ -149,7 +157,7 @@ std::optional<MethodOutcome> PairRuns::runChildOf(const Method& method, const Mo
     outcome = std::move(answer.outcome);
   } else if (child.exit_code > 1) {
     // Bad usage or input is a fault of the experiment, not of the method.
-    throw InputError(fmt::format("register-one {}: {}", method.name(), firstLine(log)));
+    throw InputError(fmt::format("register-one {}: {}", method.name, firstLine(log)));
   } else {
     row.status = "crashed";
     row.message = child.signal != 0 ? fmt::format("signal {}", child.signal) : firstLine(log);

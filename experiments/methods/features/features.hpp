@@ -3,58 +3,50 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <string>
+#include <opencv2/core.hpp>
 #include <vector>
 
-#include "agricolmap/core/raster.hpp"
-#include "agricolmap/locate/association.hpp"
+#include "agricolmap/core/placement.hpp"
+#include "agricolmap/core/search_space.hpp"
 #include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::experiments {
 
-/// A map's Excess Green as a picture.
+/// A map's Excess Green as a picture; row 0 is the map's.
 struct ExgImage {
-  Raster<std::uint8_t> grey;   ///< 0–255: from the first to the last percentile of the map
-  Raster<std::uint8_t> known;  ///< 1 where the map's cell is filled
+  cv::Mat grey;   ///< 8 bit: from the first to the last percentile of the map
+  cv::Mat known;  ///< 8 bit: 1 where the map's cell is filled
 };
 
 /// Empty cells are filled smoothly from those around them: a hard border would be the strongest
 /// feature of a strip.
 ExgImage exgImage(const map::GridMap& map);
 
-/// Keypoints with descriptors of equal length, either real or binary.
+/// Keypoints with descriptors.
 struct Features {
   std::vector<Eigen::Vector2d> cells;  ///< (col, row), 0 at the centre of cell 0
-  Eigen::MatrixXf real;                ///< one column each; empty when binary
-  std::vector<std::uint8_t> bits;      ///< `bytes` each; empty when real
-  std::size_t bytes = 0;
+  cv::Mat descriptors;                 ///< a row each: floats, or bits in bytes
   std::size_t size() const { return cells.size(); }
 };
 
-class FeatureExtractor {
- public:
-  FeatureExtractor() = default;
-  virtual ~FeatureExtractor() = default;
-  FeatureExtractor(const FeatureExtractor&) = delete;
-  FeatureExtractor& operator=(const FeatureExtractor&) = delete;
-  virtual std::string name() const = 0;
-  /// Features whose keypoints lie on known cells. Deterministic.
-  virtual Features extract(const ExgImage& image) const = 0;
-};
+/// What finds the features whose keypoints lie on known cells. Deterministic.
+using Extract = Features (*)(const ExgImage& image);
+Features surfFeatures(const ExgImage& image);       ///< Bay et al. 2008; dlib's
+Features orbFeatures(const ExgImage& image);        ///< OpenCV's
+Features siftFeatures(const ExgImage& image);       ///< OpenCV's
+Features fastBriefFeatures(const ExgImage& image);  ///< OpenCV's FAST with our BRIEF
 
-/// Keeps the features whose keypoint lies on a known cell.
-Features onKnownGround(const Features& features, const ExgImage& image);
-
-struct MatchOptions {
-  /// Lowe's ratio of the nearest to the second nearest; 1: any. Crops repeat, so that a ratio
-  /// leaves next to nothing: where a vote follows, it does the choosing.
-  double ratio = 1.0;
-};
+/// BRIEF-32 (Calonder, Lepetit, Strecha & Fua, ECCV 2010), which Debian's OpenCV does not have, at
+/// the cells of a picture: 256 comparisons of two smoothed pixels around each. The places are drawn
+/// from an isotropic normal of variance S²/25 (the article's "G II", its best), the same for every
+/// picture; pixels outside it are those of its rim.
+cv::Mat briefOf(const cv::Mat& grey, const std::vector<Eigen::Vector2d>& cells);
 
 /// Pairs of features that are each other's nearest among those that the guess allows; levelled
-/// frames [m].
+/// frames [m]. `ratio`: Lowe's, of the nearest to the second nearest; 1: any. Crops repeat, so that
+/// a ratio leaves next to nothing: where a vote follows, it does the choosing.
 std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
                                  const Features& moving, const GridFrame& moving_frame,
-                                 const SearchSpace& space, const MatchOptions& options);
+                                 const SearchSpace& space, double ratio);
 
 }  // namespace agricolmap::experiments

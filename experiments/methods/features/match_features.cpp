@@ -1,7 +1,7 @@
 // Mutual nearest neighbours among the descriptors, looked for exhaustively where the guess allows.
-#include <bit>
-#include <cstring>
+#include <cmath>
 #include <limits>
+#include <opencv2/core/hal/hal.hpp>
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/paper/flow/reach.hpp"
@@ -12,24 +12,13 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-float hamming(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
-  int sum = 0;
-  std::size_t i = 0;
-  for (; i + 8 <= bytes; i += 8) {
-    std::uint64_t x = 0;
-    std::uint64_t y = 0;
-    std::memcpy(&x, a + i, 8);
-    std::memcpy(&y, b + i, 8);
-    sum += std::popcount(x ^ y);
+float distance(const cv::Mat& a, std::size_t i, const cv::Mat& b, std::size_t j) {
+  const int row_a = static_cast<int>(i);
+  const int row_b = static_cast<int>(j);
+  if (a.type() == CV_8U) {
+    return static_cast<float>(cv::hal::normHamming(a.ptr(row_a), b.ptr(row_b), a.cols));
   }
-  for (; i < bytes; ++i) sum += std::popcount(static_cast<unsigned>(a[i] ^ b[i]));
-  return static_cast<float>(sum);
-}
-
-float distance(const Features& a, std::size_t i, const Features& b, std::size_t j) {
-  if (a.bytes > 0) return hamming(&a.bits[i * a.bytes], &b.bits[j * b.bytes], a.bytes);
-  return (a.real.col(static_cast<Eigen::Index>(i)) - b.real.col(static_cast<Eigen::Index>(j)))
-      .norm();
+  return std::sqrt(cv::hal::normL2Sqr_(a.ptr<float>(row_a), b.ptr<float>(row_b), a.cols));
 }
 
 /// The nearest and the second nearest distance.
@@ -61,7 +50,7 @@ std::vector<Eigen::Vector2d> placesOf(const Features& features, const GridFrame&
 
 std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_frame,
                                  const Features& moving, const GridFrame& moving_frame,
-                                 const SearchSpace& space, const MatchOptions& options) {
+                                 const SearchSpace& space, double ratio) {
   const std::vector<Eigen::Vector2d> fixed_at = placesOf(fixed, fixed_frame);
   const std::vector<Eigen::Vector2d> moving_at = placesOf(moving, moving_frame);
   const paper::Reach reach(space);
@@ -72,7 +61,8 @@ std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_f
       [&](std::size_t i) {
         boxes[i] = reach.forwardBox(moving_at[i]);
         for (std::size_t j = 0; j < fixed.size(); ++j) {
-          if (boxes[i].contains(fixed_at[j])) forward[i].offer(j, distance(fixed, j, moving, i));
+          if (boxes[i].contains(fixed_at[j]))
+            forward[i].offer(j, distance(fixed.descriptors, j, moving.descriptors, i));
         }
       },
       16);
@@ -81,7 +71,8 @@ std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_f
       fixed.size(),
       [&](std::size_t j) {
         for (std::size_t i = 0; i < moving.size(); ++i) {
-          if (boxes[i].contains(fixed_at[j])) backward[j].offer(i, distance(fixed, j, moving, i));
+          if (boxes[i].contains(fixed_at[j]))
+            backward[j].offer(i, distance(fixed.descriptors, j, moving.descriptors, i));
         }
       },
       16);
@@ -89,8 +80,7 @@ std::vector<Match> matchFeatures(const Features& fixed, const GridFrame& fixed_f
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const Nearest& best = forward[i];
     if (best.index == kNone || backward[best.index].index != i) continue;
-    if (options.ratio < 1.0 &&
-        static_cast<double>(best.first) > options.ratio * static_cast<double>(best.second)) {
+    if (ratio < 1.0 && static_cast<double>(best.first) > ratio * static_cast<double>(best.second)) {
       continue;
     }
     matches.push_back({moving_at[i], fixed_at[best.index]});

@@ -26,6 +26,25 @@ namespace o3d = open3d::pipelines::registration;
 using open3d::geometry::KDTreeSearchParamHybrid;
 using open3d::geometry::PointCloud;
 
+// Side of the cubes that points are merged to for the features [m]; the tutorial has 5 cm, for a
+// room. Our choice: features then reach half a metre, to the next plants and rows, in seconds.
+constexpr double kVoxel = 0.10;
+// And for the refinement [m], which the tutorial, too, does on finer points.
+constexpr double kFineVoxel = 0.05;
+constexpr double kNormalRadius = 2.0;    // [voxels]; tutorial
+constexpr int kNormalNeighbours = 30;    // tutorial
+constexpr double kFeatureRadius = 5.0;   // [voxels]; tutorial
+constexpr int kFeatureNeighbours = 100;  // tutorial
+constexpr double kFgrDistance = 0.5;     // of a correspondence [voxels]; tutorial
+constexpr int kFgrIterations = 64;       // library default
+constexpr int kFgrTuples = 1000;         // library default
+// Of pairs of the refinement [fine voxels]. The tutorial has 0.4, after a rougher ICP: a room's
+// walls forgive what plants do not (our choice).
+constexpr double kGicpDistance = 1.5;
+constexpr int kGicpIterations = 100;  // library: 30, not always enough (our choice)
+constexpr int kSeed = 1;              // of the draw of tuples
+constexpr std::size_t kLeast = 100;   // points in a cloud
+
 class Timer {
  public:
   double seconds() const {
@@ -48,55 +67,53 @@ class OneThread {
   int before_;
 };
 
-std::shared_ptr<PointCloud> thinned(const PlainPoints& points, double voxel,
-                                    const FpfhGicpParameters& p) {
+std::shared_ptr<PointCloud> thinned(const PlainPoints& points, double voxel) {
   PointCloud cloud;
   cloud.points_.reserve(points.size());
   for (const auto& point : points) cloud.points_.emplace_back(point[0], point[1], point[2]);
   std::shared_ptr<PointCloud> thin = cloud.VoxelDownSample(voxel);
-  thin->EstimateNormals(KDTreeSearchParamHybrid(p.normal_radius * voxel, p.normal_neighbours));
+  thin->EstimateNormals(KDTreeSearchParamHybrid(kNormalRadius * voxel, kNormalNeighbours));
   // Fields are seen from above.
   thin->OrientNormalsToAlignWithDirection(Eigen::Vector3d::UnitZ());
   return thin;
 }
 
 void registerInto(FpfhGicpResult& result, const PlainPoints& fixed_points,
-                  const PlainPoints& moving_points, const FpfhGicpParameters& p) {
+                  const PlainPoints& moving_points) {
   open3d::utility::SetVerbosityLevel(open3d::utility::VerbosityLevel::Error);
   const Timer features;
-  const std::shared_ptr<PointCloud> fixed = thinned(fixed_points, p.voxel, p);
-  const std::shared_ptr<PointCloud> moving = thinned(moving_points, p.voxel, p);
-  const KDTreeSearchParamHybrid around(p.feature_radius * p.voxel, p.feature_neighbours);
+  const std::shared_ptr<PointCloud> fixed = thinned(fixed_points, kVoxel);
+  const std::shared_ptr<PointCloud> moving = thinned(moving_points, kVoxel);
+  const KDTreeSearchParamHybrid around(kFeatureRadius * kVoxel, kFeatureNeighbours);
   const auto fixed_features = o3d::ComputeFPFHFeature(*fixed, around);
   const auto moving_features = o3d::ComputeFPFHFeature(*moving, around);
-  const std::shared_ptr<PointCloud> fine_fixed = thinned(fixed_points, p.fine_voxel, p);
-  const std::shared_ptr<PointCloud> fine_moving = thinned(moving_points, p.fine_voxel, p);
+  const std::shared_ptr<PointCloud> fine_fixed = thinned(fixed_points, kFineVoxel);
+  const std::shared_ptr<PointCloud> fine_moving = thinned(moving_points, kFineVoxel);
   result.features_s = features.seconds();
   const OneThread one;
   const Timer matching;
-  open3d::utility::random::Seed(p.seed);
+  open3d::utility::random::Seed(kSeed);
   o3d::FastGlobalRegistrationOption option;
-  option.maximum_correspondence_distance_ = p.fgr_distance * p.voxel;
-  option.iteration_number_ = p.fgr_iterations;
-  option.maximum_tuple_count_ = p.fgr_tuples;
+  option.maximum_correspondence_distance_ = kFgrDistance * kVoxel;
+  option.iteration_number_ = kFgrIterations;
+  option.maximum_tuple_count_ = kFgrTuples;
   const o3d::RegistrationResult global = o3d::FastGlobalRegistrationBasedOnFeatureMatching(
       *moving, *fixed, *moving_features, *fixed_features, option);
   result.global_s = matching.seconds();
   const Timer refining;
   const std::vector<Eigen::Matrix4d> starts = {Eigen::Matrix4d::Identity(),
                                                Eigen::Matrix4d(global.transformation_)};
-  for (std::size_t i = 0; i < starts.size(); ++i) {
+  double least_rmse = 0.0;
+  for (const Eigen::Matrix4d& start : starts) {
     const o3d::RegistrationResult refined =
-        o3d::RegistrationGeneralizedICP(*fine_moving, *fine_fixed, p.gicp_distance * p.fine_voxel,
-                                        starts[i], o3d::TransformationEstimationForGeneralizedICP(),
-                                        o3d::ICPConvergenceCriteria(1e-6, 1e-6, p.gicp_iterations));
+        o3d::RegistrationGeneralizedICP(*fine_moving, *fine_fixed, kGicpDistance * kFineVoxel,
+                                        start, o3d::TransformationEstimationForGeneralizedICP(),
+                                        o3d::ICPConvergenceCriteria(1e-6, 1e-6, kGicpIterations));
     if (!(refined.fitness_ > 0.0)) continue;
     // Whatever lies on the field's ground has neighbours: the one that fits closer is taken.
-    if (result.found && refined.inlier_rmse_ >= result.rmse) continue;
+    if (result.found && refined.inlier_rmse_ >= least_rmse) continue;
     result.found = true;
-    result.from_features = i > 0;
-    result.fitness = refined.fitness_;
-    result.rmse = refined.inlier_rmse_;
+    least_rmse = refined.inlier_rmse_;
     for (int r = 0; r < 4; ++r) {
       for (int c = 0; c < 4; ++c) {
         result.transform[static_cast<std::size_t>(4 * r + c)] = refined.transformation_(r, c);
@@ -109,15 +126,14 @@ void registerInto(FpfhGicpResult& result, const PlainPoints& fixed_points,
 
 }  // namespace
 
-FpfhGicpResult registerByFpfhGicp(const PlainPoints& fixed, const PlainPoints& moving,
-                                  const FpfhGicpParameters& parameters) {
+FpfhGicpResult registerByFpfhGicp(const PlainPoints& fixed, const PlainPoints& moving) {
   FpfhGicpResult result;
-  if (fixed.size() < 100 || moving.size() < 100) {
+  if (fixed.size() < kLeast || moving.size() < kLeast) {
     result.why = "fewer than 100 points in one of the clouds";
     return result;
   }
   try {
-    registerInto(result, fixed, moving, parameters);
+    registerInto(result, fixed, moving);
   } catch (const std::exception& error) {
     // The library throws plain runtime errors for clouds that it cannot use.
     result.found = false;

@@ -1,6 +1,4 @@
 // FPFH and GICP: right from centimetres off, the same twice, clear failures.
-#include "experiments/methods/fpfh/fpfh_gicp.hpp"
-
 #include <gtest/gtest.h>
 
 #include "experiments/methods/test_pair.hpp"
@@ -20,12 +18,12 @@ TEST(FpfhGicp, IsRightFromNearbyAndTheSameTwice) {
   testing::GuessError error;
   error.shift = {0.02, -0.02};
   const MethodInput input = testing::inputOf(testing::smallPair(), error, nearPrior());
-  const MethodOutcome outcome = makeFpfhGicp()->run(input);
+  const MethodOutcome outcome = makeMethod("fpfh-gicp").run(input);
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
   const evaluate::RegistrationErrors errors = testing::errorsOf(outcome, testing::smallPair());
   EXPECT_TRUE(errors.within({})) << "RMS " << errors.rms << " m, horizontal "
                                  << errors.rms_horizontal;
-  const MethodOutcome again = makeFpfhGicp()->run(input);
+  const MethodOutcome again = makeMethod("fpfh-gicp").run(input);
   ASSERT_TRUE(again.fixed_from_moving.has_value());
   EXPECT_EQ(outcome.fixed_from_moving->matrix(), again.fixed_from_moving->matrix());
 }
@@ -36,13 +34,13 @@ TEST(FpfhGicp, OracleScaleMendsItsScale) {
   error.scale = {1.15, 0.9};
   MethodInput input = testing::inputOf(testing::smallPair(), error, nearPrior());
   input.truth = testing::smallPair().best_affine;
-  const MethodOutcome outcome = makeMethod("fpfh-gicp-oracle-scale")->run(input);
+  const MethodOutcome outcome = makeMethod("fpfh-gicp-oracle-scale").run(input);
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
   EXPECT_TRUE(testing::errorsOf(outcome, testing::smallPair()).within({}))
       << testing::errorsOf(outcome, testing::smallPair()).rms;
 }
 
-TEST(FpfhGicp, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeFpfhGicp()); }
+TEST(FpfhGicp, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(makeMethod("fpfh-gicp")); }
 
 }  // namespace
 }  // namespace agricolmap::experiments

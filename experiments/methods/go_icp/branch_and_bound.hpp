@@ -11,6 +11,13 @@
 
 namespace agricolmap::experiments {
 
+/// Domain and stopping. The article searches all rotations; here, as every method is told how wrong
+/// the guess may be, the cube of rotations that the prior's heading allows (about all three axes)
+/// and the cube of translations that its translation allows. The article's ε, 0.001 per point of a
+/// cloud scaled to [−1, 1], would be (16 cm)² for a strip of 10 m, which any pose on a field meets:
+/// (3 cm)² instead, between the RMS of right poses (2.2–3.4 cm on simulated fields) and of ICP's
+/// wrong ones (from 3.3 cm). It trims by overlap: a fifth of the plants is taken to be seen by one
+/// map alone.
 struct GoIcpSearch {
   double half_rotation = 0.2;     ///< half side of the cube of rotation vectors [rad]
   double half_translation = 5.0;  ///< half side of the cube of translations [m]

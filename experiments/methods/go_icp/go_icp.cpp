@@ -1,5 +1,4 @@
-#include "experiments/methods/go_icp/go_icp.hpp"
-
+// Go-ICP on the vegetation points: rigid, by branch and bound.
 #include <fmt/format.h>
 
 #include <Eigen/SVD>
@@ -11,13 +10,23 @@
 #include <utility>
 
 #include "agricolmap/core/parallel.hpp"
+#include "experiments/methods/go_icp/branch_and_bound.hpp"
 #include "experiments/methods/nearest_points.hpp"
 #include "experiments/methods/peer_maps.hpp"
+#include "experiments/methods/peers.hpp"
 
 namespace agricolmap::experiments {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
+
+constexpr std::size_t kMostFixed = 60000;   // points in the distance field; our choice: all at 2 cm
+constexpr std::size_t kMostMoving = 500;    // data points of the search; the article: 100 to 1000
+constexpr std::size_t kMostPolish = 20000;  // data points of the last ICP; our choice
+constexpr double kFieldCell = 0.05;   // of the distance field [m]; the article: 1/300 of the extent
+constexpr double kFieldMargin = 0.5;  // around the fixed points [m]; our choice
+constexpr int kIcpIterations = 100;   // at most; our choice
+constexpr double kIcpStop = 1e-4;     // done when no point moves further [m]; our choice
 
 Points inSpace(const std::vector<map::VegetationPoint>& vegetation) {
   Points points;
@@ -28,8 +37,8 @@ Points inSpace(const std::vector<map::VegetationPoint>& vegetation) {
   return points;
 }
 
-/// The rigid motion with the least squares between paired points. Not Eigen::umeyama: g++ 12 with AVX
-/// takes it for a read out of bounds.
+/// The rigid motion with the least squares between paired points. Not Eigen::umeyama: g++ 12 with
+/// AVX takes it for a read out of bounds.
 Eigen::Isometry3d fitRigid(const Points& from, const Points& to) {
   Eigen::Vector3d from_mean = Eigen::Vector3d::Zero();
   Eigen::Vector3d to_mean = Eigen::Vector3d::Zero();
@@ -52,18 +61,18 @@ Eigen::Isometry3d fitRigid(const Points& from, const Points& to) {
 
 /// Trimmed rigid ICP.
 Eigen::Isometry3d rigidIcp(const NearestPoints& fixed, const Points& moving,
-                           Eigen::Isometry3d motion, const GoIcpOptions& options) {
+                           Eigen::Isometry3d motion) {
   constexpr double kReach = 2.0;  // beyond this a point has no neighbour to speak of [m]
   double radius = 0.0;
   for (const Eigen::Vector3d& p : moving) radius = std::max(radius, p.norm());
   const auto most =
-      static_cast<std::size_t>((1.0 - options.search.trim) * static_cast<double>(moving.size()));
+      static_cast<std::size_t>((1.0 - GoIcpSearch{}.trim) * static_cast<double>(moving.size()));
   struct Pair {
     double distance;
     std::size_t moving;
     std::size_t fixed;
   };
-  for (int step = 0; step < options.icp_iterations; ++step) {
+  for (int step = 0; step < kIcpIterations; ++step) {
     std::vector<std::optional<NearestPoints::Neighbour>> found(moving.size());
     parallelFor(
         moving.size(), [&](std::size_t i) { found[i] = fixed.nearest(motion * moving[i], kReach); },
@@ -86,88 +95,69 @@ Eigen::Isometry3d rigidIcp(const NearestPoints& fixed, const Points& moving,
     const double moved = (next.translation() - motion.translation()).norm() +
                          radius * (next.linear() - motion.linear()).norm();
     motion = next;
-    if (moved < options.icp_stop) break;
+    if (moved < kIcpStop) break;
   }
   return motion;
 }
 
-class GoIcp : public Method {
- public:
-  explicit GoIcp(const GoIcpOptions& options) : options_(options) {}
-  std::string name() const override { return "go-icp"; }
-  std::string about() const override {
-    return "rigid branch and bound on the vegetation points, stops at the time limit";
-  }
-  Traits traits() const override { return {.slow = true, .rigid = true}; }
-
- protected:
-  void attempt(const MethodInput& input, MethodOutcome& outcome) const override {
-    const Stopwatch watch;
-    const PeerMaps maps = makePeerMaps(input, outcome.times);
-    const PriorUncertainty& prior = maps.space.uncertainty;
-    const PeerPoints vegetation = makePeerPoints(maps, prior.translation + 1.0, options_.most_fixed,
-                                                 options_.most_polish, outcome.times);
-    Points fixed = inSpace(vegetation.fixed);
-    // Rotations are about the middle of the strip, so that they move it little.
-    Points all = inSpace(vegetation.moving);
-    const Eigen::Vector3d middle =
-        std::accumulate(all.begin(), all.end(), Eigen::Vector3d::Zero().eval()) /
-        static_cast<double>(all.size());
-    for (Eigen::Vector3d& p : all) p -= middle;
-    Points few = inSpace(map::thinToAtMost(vegetation.moving, options_.most_moving));
-    for (Eigen::Vector3d& p : few) p -= middle;
-    // The search moves the middle from where the guess lays it.
-    for (Eigen::Vector3d& p : fixed) p -= middle;
-    const NearestPoints near(fixed);
-    const DistanceField field = outcome.times.run(
-        "field", [&] { return DistanceField(fixed, options_.field_cell, options_.field_margin); });
-    const GoIcpResult result = outcome.times.run("search", [&] {
-      return search(field, near, few, prior, input.time_limit - watch.seconds());
-    });
-    const Eigen::Isometry3d motion = outcome.times.run(
-        "icp", [&] { return rigidIcp(near, all, result.pose.motion(), options_); });
-    outcome.accepted = result.proven;
-    if (!outcome.accepted) {
-      outcome.why =
-          fmt::format("not proven best when it had to stop, after {} rotations and {} translations",
-                      result.rotations, result.bounds);
-    }
-    const Eigen::Affine3d pose(Eigen::Translation3d(middle) * motion *
-                               Eigen::Translation3d(-middle));
-    // Its horizontal part: where it lays the strip's own plane.
-    Eigen::Affine2d plane = Eigen::Affine2d::Identity();
-    const Eigen::Matrix3d& turn = motion.linear();
-    plane.linear() = Eigen::Rotation2Dd(std::atan2(turn(1, 0), turn(0, 0))).toRotationMatrix();
-    plane.translation() = (pose * middle).head<2>() - plane.linear() * middle.head<2>();
-    setPlanePose(maps, input, plane, outcome);
-  }
-
- private:
-  GoIcpResult search(const DistanceField& field, const NearestPoints& fixed, const Points& moving,
-                     const PriorUncertainty& prior, double time_limit) const {
-    GoIcpSearch domain = options_.search;
-    domain.half_rotation =
-        std::max(1e-3, std::min(prior.heading_deg, 180.0) * std::numbers::pi / 180.0);
-    domain.half_translation = prior.translation;
-    const GoIcpSearcher searcher(field, moving, domain, time_limit);
-    return searcher.run([&](const GoIcpPose& start) {
-      const Eigen::Isometry3d motion = rigidIcp(fixed, moving, start.motion(), options_);
-      const Eigen::AngleAxisd turn(motion.linear());
-      GoIcpPose pose;
-      pose.rotation = turn.angle() * turn.axis();
-      pose.translation = motion.translation();
-      pose.error = searcher.errorOf(pose);
-      return pose;
-    });
-  }
-
-  GoIcpOptions options_;
-};
+GoIcpResult search(const DistanceField& field, const NearestPoints& fixed, const Points& moving,
+                   const PriorUncertainty& prior, double time_limit) {
+  GoIcpSearch domain;
+  domain.half_rotation =
+      std::max(1e-3, std::min(prior.heading_deg, 180.0) * std::numbers::pi / 180.0);
+  domain.half_translation = prior.translation;
+  const GoIcpSearcher searcher(field, moving, domain, time_limit);
+  return searcher.run([&](const GoIcpPose& start) {
+    const Eigen::Isometry3d motion = rigidIcp(fixed, moving, start.motion());
+    const Eigen::AngleAxisd turn(motion.linear());
+    GoIcpPose pose;
+    pose.rotation = turn.angle() * turn.axis();
+    pose.translation = motion.translation();
+    pose.error = searcher.errorOf(pose);
+    return pose;
+  });
+}
 
 }  // namespace
 
-std::unique_ptr<Method> makeGoIcp(const GoIcpOptions& options) {
-  return std::make_unique<GoIcp>(options);
+void goIcp(const MethodInput& input, MethodOutcome& outcome) {
+  const Stopwatch watch;
+  const PeerMaps maps = makePeerMaps(input, outcome.times);
+  const PriorUncertainty& prior = maps.space.uncertainty;
+  const PeerPoints vegetation =
+      makePeerPoints(maps, prior.translation + 1.0, kMostFixed, kMostPolish, outcome.times);
+  Points fixed = inSpace(vegetation.fixed);
+  // Rotations are about the middle of the strip, so that they move it little.
+  Points all = inSpace(vegetation.moving);
+  const Eigen::Vector3d middle =
+      std::accumulate(all.begin(), all.end(), Eigen::Vector3d::Zero().eval()) /
+      static_cast<double>(all.size());
+  for (Eigen::Vector3d& p : all) p -= middle;
+  Points few = inSpace(map::thinToAtMost(vegetation.moving, kMostMoving));
+  for (Eigen::Vector3d& p : few) p -= middle;
+  // The search moves the middle from where the guess lays it.
+  for (Eigen::Vector3d& p : fixed) p -= middle;
+  const NearestPoints near(fixed);
+  const DistanceField field =
+      outcome.times.run("field", [&] { return DistanceField(fixed, kFieldCell, kFieldMargin); });
+  const GoIcpResult result = outcome.times.run("search", [&] {
+    return search(field, near, few, prior, input.time_limit - watch.seconds());
+  });
+  const Eigen::Isometry3d motion =
+      outcome.times.run("icp", [&] { return rigidIcp(near, all, result.pose.motion()); });
+  outcome.accepted = result.proven;
+  if (!outcome.accepted) {
+    outcome.why =
+        fmt::format("not proven best when it had to stop, after {} rotations and {} translations",
+                    result.rotations, result.bounds);
+  }
+  const Eigen::Affine3d pose(Eigen::Translation3d(middle) * motion * Eigen::Translation3d(-middle));
+  // Its horizontal part: where it lays the strip's own plane.
+  Eigen::Affine2d plane = Eigen::Affine2d::Identity();
+  const Eigen::Matrix3d& turn = motion.linear();
+  plane.linear() = Eigen::Rotation2Dd(std::atan2(turn(1, 0), turn(0, 0))).toRotationMatrix();
+  plane.translation() = (pose * middle).head<2>() - plane.linear() * middle.head<2>();
+  setPlanePose(maps, input, plane, outcome);
 }
 
 }  // namespace agricolmap::experiments

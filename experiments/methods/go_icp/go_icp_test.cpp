@@ -1,12 +1,11 @@
 // Go-ICP: its distance field, that its bounds do not lose the answer, and the method.
-#include "experiments/methods/go_icp/go_icp.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "agricolmap/core/random.hpp"
+#include "experiments/methods/go_icp/branch_and_bound.hpp"
 #include "experiments/methods/test_pair.hpp"
 
 namespace agricolmap::experiments {
@@ -82,7 +81,7 @@ MethodOutcome runOn(const Method& method, const testing::GuessError& error, bool
 TEST(GoIcp, IsRightWithoutScaleError) {
   testing::GuessError error;
   error.shift = {0.45, -0.3};
-  const MethodOutcome outcome = runOn(*makeGoIcp(), error, false);
+  const MethodOutcome outcome = runOn(makeMethod("go-icp"), error, false);
   ASSERT_TRUE(outcome.fixed_from_moving.has_value()) << outcome.why;
   EXPECT_TRUE(testing::errorsOf(outcome, testing::smallPair()).within({}))
       << testing::errorsOf(outcome, testing::smallPair()).rms;
@@ -92,16 +91,16 @@ TEST(GoIcp, OracleScaleMendsItsScale) {
   testing::GuessError error;
   error.shift = {0.3, 0.2};
   error.scale = {1.15, 0.9};
-  const MethodOutcome plain = runOn(*makeGoIcp(), error, false);
+  const MethodOutcome plain = runOn(makeMethod("go-icp"), error, false);
   ASSERT_TRUE(plain.fixed_from_moving.has_value()) << plain.why;
   EXPECT_FALSE(testing::errorsOf(plain, testing::smallPair()).within({}));
-  const MethodOutcome helped = runOn(*makeMethod("go-icp-oracle-scale"), error, true);
+  const MethodOutcome helped = runOn(makeMethod("go-icp-oracle-scale"), error, true);
   ASSERT_TRUE(helped.fixed_from_moving.has_value()) << helped.why;
   EXPECT_TRUE(testing::errorsOf(helped, testing::smallPair()).within({}))
       << testing::errorsOf(helped, testing::smallPair()).rms;
 }
 
-TEST(GoIcp, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(*makeGoIcp()); }
+TEST(GoIcp, FailsOnEmptyMaps) { testing::expectFailsOnEmptyMaps(makeMethod("go-icp")); }
 
 }  // namespace
 }  // namespace agricolmap::experiments
