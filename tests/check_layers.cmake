@@ -1,6 +1,10 @@
-# cmake -DSOURCE_DIR=src/agricolmap -DLAYERS="core;config;..." -P check_layers.cmake
-# Fails when a file includes from a folder that stands above its own, or from one not in the list.
+# cmake -DSOURCE_DIR=src/agricolmap -DLAYERS="core;config;..." [-DOTHERS="experiments;..."]
+#       [-DPARTIAL=ON] -P check_layers.cmake
+# Fails when a file includes from a folder that stands above its own, or from one not in the list;
+# and when it includes from one of OTHERS, trees that this one must not know of. Includes begin with
+# the name of SOURCE_DIR: "agricolmap/core/...". PARTIAL: other folders beside these are no matter.
 cmake_minimum_required(VERSION 3.25)
+get_filename_component(tree ${SOURCE_DIR} NAME)
 set(violations 0)
 set(files 0)
 foreach(layer IN LISTS LAYERS)
@@ -8,22 +12,28 @@ foreach(layer IN LISTS LAYERS)
   file(GLOB_RECURSE sources ${SOURCE_DIR}/${layer}/*.hpp ${SOURCE_DIR}/${layer}/*.cpp)
   foreach(source IN LISTS sources)
     math(EXPR files "${files} + 1")
-    file(STRINGS ${source} includes REGEX "^[ \t]*#[ \t]*include[ \t]+[\"<]agricolmap/")
+    file(STRINGS ${source} includes REGEX "^[ \t]*#[ \t]*include[ \t]+[\"<][a-z_]+/")
     foreach(line IN LISTS includes)
-      string(REGEX REPLACE ".*[\"<]agricolmap/([^/\">]+).*" "\\1" folder "${line}")
+      string(REGEX REPLACE ".*[\"<]([^/\">]+)/([^/\">]+).*" "\\1;\\2" parts "${line}")
+      list(GET parts 0 from)
+      list(GET parts 1 folder)
       list(FIND LAYERS "${folder}" other)
-      if(other EQUAL -1 OR other GREATER own)
-        message(SEND_ERROR "${source}: '${line}': ${layer} must not include from ${folder}")
+      if(from IN_LIST OTHERS OR (from STREQUAL tree AND (other EQUAL -1 OR other GREATER own)))
+        message(SEND_ERROR "${source}: '${line}': ${layer} must not include from there")
         math(EXPR violations "${violations} + 1")
       endif()
     endforeach()
   endforeach()
 endforeach()
 # A folder that the list forgets would go unchecked.
-file(GLOB folders RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/*)
+set(folders)
+if(NOT PARTIAL)
+  file(GLOB folders RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/*)
+endif()
 foreach(folder IN LISTS folders)
-  if(IS_DIRECTORY ${SOURCE_DIR}/${folder} AND NOT folder IN_LIST LAYERS)
-    message(SEND_ERROR "${SOURCE_DIR}/${folder} is not in AGRICOLMAP_LAYERS")
+  file(GLOB_RECURSE sources ${SOURCE_DIR}/${folder}/*.hpp ${SOURCE_DIR}/${folder}/*.cpp)
+  if(IS_DIRECTORY ${SOURCE_DIR}/${folder} AND sources AND NOT folder IN_LIST LAYERS)
+    message(SEND_ERROR "${SOURCE_DIR}/${folder} is not in the list of layers")
   endif()
 endforeach()
 if(files EQUAL 0)

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
-#include "exit_code.hpp"
+#include "support/exit_code.hpp"
 
 namespace agricolmap {
 

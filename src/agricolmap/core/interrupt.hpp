@@ -40,12 +40,15 @@ class StopScope {
   detail::StopHandover handover_;
 };
 
+/// Whether the token of the scope that this is called in asks to stop.
+inline bool interruptRequested() noexcept {
+  return detail::stop_of_thread != nullptr && detail::stop_of_thread->stop_requested();
+}
+
 /// Throws Interrupted once the token of the scope that this is called in asks to stop. Cheap: call
 /// it in every long loop.
 inline void throwIfInterrupted() {
-  if (detail::stop_of_thread != nullptr && detail::stop_of_thread->stop_requested()) {
-    throw Interrupted();
-  }
+  if (interruptRequested()) throw Interrupted();
 }
 
 }  // namespace agricolmap
