@@ -1,11 +1,23 @@
-# cmake -DSOURCE_DIR=src/agricolmap -DLAYERS="core;config;..." -P check_layers.cmake
-# Fails when a file includes from a folder that stands above its own, or from one not in the list.
+# cmake -DSOURCE_DIR=src/agricolmap -DPUBLIC_DIR=include/agricolmap -DLAYERS="error.hpp;core;..."
+#       -P check_layers.cmake
+# Fails when a file includes from a folder (or a public header) that stands above its own, or from
+# one not in the list; and when a public header includes what consumers need not have: anything but
+# its like, Eigen and the standard library.
 cmake_minimum_required(VERSION 3.25)
 set(violations 0)
 set(files 0)
 foreach(layer IN LISTS LAYERS)
   list(FIND LAYERS ${layer} own)
-  file(GLOB_RECURSE sources ${SOURCE_DIR}/${layer}/*.hpp ${SOURCE_DIR}/${layer}/*.cpp)
+  if(layer MATCHES "[.]hpp$")
+    set(sources ${PUBLIC_DIR}/${layer})
+    file(STRINGS ${sources} includes REGEX "^[ \t]*#[ \t]*include")
+    list(FILTER includes EXCLUDE REGEX "<[a-z_]+>|<Eigen/[A-Za-z]+>|\"agricolmap/[a-z]+[.]hpp\"")
+    if(includes)
+      message(SEND_ERROR "${sources}: '${includes}': consumers may not have that")
+    endif()
+  else()
+    file(GLOB_RECURSE sources ${SOURCE_DIR}/${layer}/*.hpp ${SOURCE_DIR}/${layer}/*.cpp)
+  endif()
   foreach(source IN LISTS sources)
     math(EXPR files "${files} + 1")
     file(STRINGS ${source} includes REGEX "^[ \t]*#[ \t]*include[ \t]+[\"<]agricolmap/")
@@ -24,6 +36,12 @@ file(GLOB folders RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/*)
 foreach(folder IN LISTS folders)
   if(IS_DIRECTORY ${SOURCE_DIR}/${folder} AND NOT folder IN_LIST LAYERS)
     message(SEND_ERROR "${SOURCE_DIR}/${folder} is not in AGRICOLMAP_LAYERS")
+  endif()
+endforeach()
+file(GLOB headers RELATIVE ${PUBLIC_DIR} ${PUBLIC_DIR}/*)
+foreach(header IN LISTS headers)
+  if(NOT header IN_LIST LAYERS)
+    message(SEND_ERROR "${PUBLIC_DIR}/${header} is not in AGRICOLMAP_LAYERS")
   endif()
 endforeach()
 if(files EQUAL 0)
