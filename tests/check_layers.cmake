@@ -1,15 +1,26 @@
-# cmake -DSOURCE_DIR=src/agricolmap -DLAYERS="core;config;..." [-DOTHERS="experiments;..."]
-#       [-DPARTIAL=ON] -P check_layers.cmake
-# Fails when a file includes from a folder that stands above its own, or from one not in the list;
-# and when it includes from one of OTHERS, trees that this one must not know of. Includes begin with
-# the name of SOURCE_DIR: "agricolmap/core/...". PARTIAL: other folders beside these are no matter.
+# cmake -DSOURCE_DIR=src/agricolmap -DLAYERS="error.hpp;core;..." [-DPUBLIC_DIR=include/agricolmap]
+#       [-DOTHERS="experiments;..."] [-DPARTIAL=ON] -P check_layers.cmake
+# Fails when a file includes from a folder (or a public header) that stands above its own, or from one
+# not in the list; when it includes from one of OTHERS, trees that this one must not know of; and when
+# a public header includes what consumers need not have: anything but its like, Eigen and the standard
+# library. Includes begin with the name of SOURCE_DIR: "agricolmap/core/...". PARTIAL: other folders
+# beside these are no matter.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(tree ${SOURCE_DIR} NAME)
 set(violations 0)
 set(files 0)
 foreach(layer IN LISTS LAYERS)
   list(FIND LAYERS ${layer} own)
-  file(GLOB_RECURSE sources ${SOURCE_DIR}/${layer}/*.hpp ${SOURCE_DIR}/${layer}/*.cpp)
+  if(layer MATCHES "[.]hpp$")
+    set(sources ${PUBLIC_DIR}/${layer})
+    file(STRINGS ${sources} includes REGEX "^[ \t]*#[ \t]*include")
+    list(FILTER includes EXCLUDE REGEX "<[a-z_]+>|<Eigen/[A-Za-z]+>|\"agricolmap/[a-z]+[.]hpp\"")
+    if(includes)
+      message(SEND_ERROR "${sources}: '${includes}': consumers may not have that")
+    endif()
+  else()
+    file(GLOB_RECURSE sources ${SOURCE_DIR}/${layer}/*.hpp ${SOURCE_DIR}/${layer}/*.cpp)
+  endif()
   foreach(source IN LISTS sources)
     math(EXPR files "${files} + 1")
     file(STRINGS ${source} includes REGEX "^[ \t]*#[ \t]*include[ \t]+[\"<][a-z_]+/")
@@ -34,6 +45,15 @@ foreach(folder IN LISTS folders)
   file(GLOB_RECURSE sources ${SOURCE_DIR}/${folder}/*.hpp ${SOURCE_DIR}/${folder}/*.cpp)
   if(IS_DIRECTORY ${SOURCE_DIR}/${folder} AND sources AND NOT folder IN_LIST LAYERS)
     message(SEND_ERROR "${SOURCE_DIR}/${folder} is not in the list of layers")
+  endif()
+endforeach()
+set(headers)
+if(PUBLIC_DIR)
+  file(GLOB headers RELATIVE ${PUBLIC_DIR} ${PUBLIC_DIR}/*)
+endif()
+foreach(header IN LISTS headers)
+  if(NOT header IN_LIST LAYERS)
+    message(SEND_ERROR "${PUBLIC_DIR}/${header} is not in AGRICOLMAP_LAYERS")
   endif()
 endforeach()
 if(files EQUAL 0)

@@ -33,7 +33,12 @@ class Batch {
   void run(int jobs, int threads_each) {
     threads_each_ = threads_each;
     std::vector<std::thread> threads;
-    for (int i = 1; i < jobs; ++i) threads.emplace_back([this] { work(); });
+    for (int i = 1; i < jobs; ++i) {
+      threads.emplace_back([this, stop = stopOfScope()] {
+        const StopScope scope(stop);
+        work();
+      });
+    }
     work();
     for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);

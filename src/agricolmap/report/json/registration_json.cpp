@@ -9,7 +9,7 @@
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/report/counts.hpp"
-#include "agricolmap/report/draw/utf8.hpp"
+#include "agricolmap/report/json/utf8.hpp"
 
 namespace agricolmap::report {
 namespace {

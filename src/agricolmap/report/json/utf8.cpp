@@ -1,4 +1,4 @@
-#include "agricolmap/report/draw/utf8.hpp"
+#include "agricolmap/report/json/utf8.hpp"
 
 #include <nlohmann/json.hpp>
 
