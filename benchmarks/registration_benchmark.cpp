@@ -111,8 +111,8 @@ void flow(benchmark::State& state) {
   const pipeline::PairMaps& maps = scene.result.maps;
   for ([[maybe_unused]] auto _ : state) {
     Monitor monitor;
-    benchmark::DoNotOptimize(paper::associateByFlow(maps.fixed, maps.moving, maps.space,
-                                                    scene.options.flow, monitor));
+    benchmark::DoNotOptimize(
+        paper::associateByFlow(maps.fixed, maps.moving, maps.space, scene.options.flow, monitor));
   }
 }
 
@@ -138,8 +138,8 @@ void verdict(benchmark::State& state) {
   refined.best = {.pose = r.placed->pose};
   for ([[maybe_unused]] auto _ : state) {
     Monitor monitor;
-    const pipeline::Measured measured = pipeline::measureStraightened(
-        signals, r.maps.space, refined, scene.options, monitor);
+    const pipeline::Measured measured =
+        pipeline::measureStraightened(signals, r.maps.space, refined, scene.options, monitor);
     benchmark::DoNotOptimize(
         pipeline::judgePlaced(measured.placed, {}, r.maps.space, scene.options));
   }

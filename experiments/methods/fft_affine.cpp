@@ -106,7 +106,7 @@ std::vector<locate::Hypothesis> hypothesesOver(const PeerMaps& maps, const map::
   for (const double yaw : stepsOver(heading, shift / half.norm())) {
     for (const double x : stepsOver(scale, shift / half.x())) {
       for (const double y : stepsOver(scale, shift / half.y())) {
-        all.push_back({yaw, std::exp(x), std::exp(y)});
+        all.push_back({yaw, {std::exp(x), std::exp(y)}});
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "agricolmap/core/placement.hpp"
 #include "agricolmap/map/signal_map.hpp"
 #include "agricolmap/map/vegetation.hpp"
 #include "agricolmap/pipeline/pair_maps.hpp"

@@ -23,9 +23,8 @@ pipeline::Located locate(const Extract& extract, const paper::VoteOptions& vote,
   located.matches = times.run("match", [&] {
     return matchFeatures(fixed_features, fixed.frame, moving_features, moving.frame, space, 1.0);
   });
-  const std::vector<paper::VotedPlacement> voted = times.run("vote", [&] {
-    return paper::voteCoherent(located.matches, space, moving.frame.cell, vote);
-  });
+  const std::vector<paper::VotedPlacement> voted = times.run(
+      "vote", [&] { return paper::voteCoherent(located.matches, space, moving.frame.cell, vote); });
   for (const paper::VotedPlacement& one : voted) {
     Placement placement{.pose = one.pose.fixed_from_moving,
                         .score = static_cast<double>(one.inliers.size()),
@@ -33,9 +32,10 @@ pipeline::Located locate(const Extract& extract, const paper::VoteOptions& vote,
     for (const std::uint32_t i : one.inliers) placement.matches.push_back(located.matches[i]);
     located.placements.push_back(std::move(placement));
   }
-  located.flow = {.seeds = moving_features.size(),
-                  .first = {located.matches.size(), voted.empty() ? 0 : voted.front().inliers.size()},
-                  .again = {}};
+  located.flow = {
+      .seeds = moving_features.size(),
+      .first = {located.matches.size(), voted.empty() ? 0 : voted.front().inliers.size()},
+      .again = {}};
   return located;
 }
 
