@@ -45,8 +45,8 @@ const simulate::SimulatedPair& tinyPair() {
 
 Registration registerTiny(const RegistrationOptions& options) {
   const simulate::SimulatedPair& pair = tinyPair();
-  StageTimes times;
-  return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, times);
+  Monitor monitor;
+  return pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, options, monitor);
 }
 
 std::vector<std::string> allPaths() {
@@ -78,13 +78,14 @@ void expectSound(const Registration& result) {
     EXPECT_GE(p, 0.0);
     EXPECT_LE(p, 1.0);
   }
-  if (!result.has_transform) {
+  ASSERT_EQ(result.transform.has_value(), result.placed.has_value());
+  if (!result.transform) {
     EXPECT_EQ(result.verdict.status, verdict::Status::kRejected);
     return;
   }
-  EXPECT_TRUE(result.fixed_from_moving.matrix().allFinite());
-  EXPECT_TRUE(std::isfinite(result.evidence.significance));
-  EXPECT_TRUE(std::isfinite(result.evidence.uniqueness));
+  EXPECT_TRUE(result.transform->fixed_from_moving.matrix().allFinite());
+  EXPECT_TRUE(std::isfinite(result.placed->evidence.significance));
+  EXPECT_TRUE(std::isfinite(result.placed->evidence.uniqueness));
 }
 
 class LimitsTest : public testing::TestWithParam<std::string> {
@@ -119,14 +120,14 @@ INSTANTIATE_TEST_SUITE_P(Options, LimitsTest, testing::ValuesIn(allPaths()),
                            return name;
                          });
 
-TEST(LimitsTest, ThePairIsOneThatCanBeRegistered) {
+TEST(Limits, ThePairIsOneThatCanBeRegistered) {
   for (const char* name : {"default", "paper"}) {
-    EXPECT_TRUE(registerTiny(pipeline::preset(name)).has_transform) << name;
+    EXPECT_TRUE(registerTiny(pipeline::preset(name)).transform) << name;
   }
 }
 
 /// With every option at a limit that has no effect by missingFor().
-TEST(LimitsTest, WhatIsRefusedForDoingNothingDoesNothing) {
+TEST(Limits, WhatIsRefusedForDoingNothingDoesNothing) {
   for (const char* name : {"default", "paper"}) {
     const RegistrationOptions usual = pipeline::preset(name);
     const Registration before = registerTiny(usual);
@@ -139,7 +140,10 @@ TEST(LimitsTest, WhatIsRefusedForDoingNothingDoesNothing) {
         config::parseOption(field, high ? extremes.back() : extremes.front())();
       }
       const Registration after = registerTiny(options);
-      EXPECT_EQ(after.fixed_from_moving.matrix(), before.fixed_from_moving.matrix()) << name;
+      ASSERT_TRUE(before.transform && after.transform) << name;
+      EXPECT_EQ(after.transform->fixed_from_moving.matrix(),
+                before.transform->fixed_from_moving.matrix())
+          << name;
       EXPECT_EQ(after.verdict.probability, before.verdict.probability) << name;
     }
   }

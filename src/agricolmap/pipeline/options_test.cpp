@@ -30,16 +30,12 @@ TEST(RegistrationOptions, EveryGroupSaysWhatItIsAbout) {
 TEST(RegistrationOptions, WhatOneDecidesForOthersIsWrittenThere) {
   RegistrationOptions options;
   options.geometry_only = true;
-  options.signal.high_pass = 0.5;
   options.filter.floor = 0.2;
   options.seed = 9;
   const RegistrationOptions in_force = resolved(options);
   EXPECT_EQ(in_force.signal.term, map::DataTerm::kHeight);
   EXPECT_EQ(in_force.flow.describe.term, map::DataTerm::kHeight);
-  EXPECT_EQ(in_force.search.signal.high_pass, 0.5);
-  EXPECT_EQ(in_force.search.signal.term, map::DataTerm::kHeight);
   EXPECT_EQ(in_force.search.filter.floor, 0.2);
-  EXPECT_EQ(in_force.evidence.filter.floor, 0.2);
   EXPECT_EQ(in_force.flow.seed, 9);
   EXPECT_EQ(in_force.affine.seed, 9);
   options = {};
