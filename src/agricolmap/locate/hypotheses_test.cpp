@@ -14,7 +14,7 @@ const Eigen::Vector2d kStrip(5.0, 1.1);
 
 TEST(Hypotheses, MetricIsTheMeanSquaredDisplacement) {
   const Eigen::Matrix2d axes = rotation2(0.4), scales = rotation2(-0.3);
-  const Hypothesis small{0.002, 1.003, 0.999};
+  const Hypothesis small{0.002, {1.003, 0.999}};
   const Eigen::Matrix2d change = small.linear(scales) - Eigen::Matrix2d::Identity();
   Random random(1);
   double sum = 0.0;
@@ -72,8 +72,8 @@ TEST(Hypotheses, TheNearestIsWhatLookingAtAllOfThemFinds) {
     const auto among = coverSpace(uncertainty, metric, 0.1);
     const NearestHypothesis nearest(among, metric);
     for (int i = 0; i < 100; ++i) {
-      const Hypothesis sought{random.uniform(-3.0, 3.0), random.uniform(0.7, 1.4),
-                              random.uniform(0.7, 1.4)};
+      const Hypothesis sought{random.uniform(-3.0, 3.0),
+                              {random.uniform(0.7, 1.4), random.uniform(0.7, 1.4)}};
       double least = 1e9;
       for (const Hypothesis& h : among) {
         const Eigen::Vector3d d = h.vector() - sought.vector();

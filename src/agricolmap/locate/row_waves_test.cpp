@@ -30,7 +30,7 @@ Views rowField(double yaw, double scale_x, double scale_y) {
   const Truth truth = growField(field);
   const Eigen::Vector2d middle = Eigen::Vector2d::Constant(0.5 * field.size);
   Views views;
-  views.truth = {yaw, scale_x, scale_y};
+  views.truth = {yaw, {scale_x, scale_y}};
   views.fixed = viewOf(truth, field,
                        map::Box2(Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(field.size)),
                        Eigen::Affine2d::Identity(), 0.02, 1);

@@ -53,7 +53,7 @@ Json reportOf(const pipeline::Registration& registration) {
 
 TEST(RegistrationJson, AcceptedHasEverything) {
   pipeline::Registration registration = testing::testRegistration();
-  registration.frames.moving_footprint.left_out = 20;
+  registration.maps.frames.moving_footprint.left_out = 20;
   const Json json = reportOf(registration);
   EXPECT_EQ(json["status"], "accepted");
   EXPECT_EQ(json["reasons"].size(), 2U);
