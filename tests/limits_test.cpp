@@ -78,6 +78,7 @@ void expectSound(const Registration& result) {
     EXPECT_GE(p, 0.0);
     EXPECT_LE(p, 1.0);
   }
+  ASSERT_EQ(result.transform.has_value(), result.placed.has_value());
   if (!result.transform) {
     EXPECT_EQ(result.verdict.status, verdict::Status::kRejected);
     return;
@@ -119,14 +120,14 @@ INSTANTIATE_TEST_SUITE_P(Options, LimitsTest, testing::ValuesIn(allPaths()),
                            return name;
                          });
 
-TEST(LimitsTest, ThePairIsOneThatCanBeRegistered) {
+TEST(Limits, ThePairIsOneThatCanBeRegistered) {
   for (const char* name : {"default", "paper"}) {
     EXPECT_TRUE(registerTiny(pipeline::preset(name)).transform) << name;
   }
 }
 
 /// With every option at a limit that has no effect by missingFor().
-TEST(LimitsTest, WhatIsRefusedForDoingNothingDoesNothing) {
+TEST(Limits, WhatIsRefusedForDoingNothingDoesNothing) {
   for (const char* name : {"default", "paper"}) {
     const RegistrationOptions usual = pipeline::preset(name);
     const Registration before = registerTiny(usual);
@@ -139,6 +140,7 @@ TEST(LimitsTest, WhatIsRefusedForDoingNothingDoesNothing) {
         config::parseOption(field, high ? extremes.back() : extremes.front())();
       }
       const Registration after = registerTiny(options);
+      ASSERT_TRUE(before.transform && after.transform) << name;
       EXPECT_EQ(after.transform->fixed_from_moving.matrix(),
                 before.transform->fixed_from_moving.matrix())
           << name;

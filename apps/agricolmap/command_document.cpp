@@ -22,13 +22,15 @@ ExitCode runDocument() {
   fmt::print(
       "# Options\n\n"
       "<!-- Written by `agricolmap document-options`; a test compares. -->\n\n"
-      "Every option is a flag (`--grid.cell 0.02`; `-` stands for `_`: `--prior.heading-deg 3`) "
-      "and, "
-      "for\n`register` and `simulate`, a key of the YAML file given with `--config` (`grid:` and "
-      "below it\n`cell: 0.02`). Flags win over the file, the file over the preset. `--dump-config` "
-      "prints what is in\nforce. `--help` has the options for users, `--help-all` has all. What "
-      "would "
-      "do nothing is refused: a\nflag always, a value in a file where it is not the default.\n");
+      "Every option is a flag (`--grid.cell 0.02`, `--prior.heading-deg 3`; `-` stands for `_`) "
+      "and, for\n"
+      "`register` and `simulate`, a key of the YAML file given with `--config` (`grid:` and below "
+      "it\n"
+      "`cell: 0.02`). Flags win over the file, the file over the preset. `--dump-config` prints "
+      "what is in\n"
+      "force. `--help` shows the options for users, `--help-all` all. What would do nothing beside "
+      "the others\n"
+      "is refused: a flag always, a value in a file unless it is the default.\n");
   printSection<pipeline::RegistrationOptions>(
       "register",
       "Defaults are those of `--preset default`; `--preset paper` "

@@ -20,15 +20,15 @@ struct CorrelationOptions {
   /// Only headings and scales that lay the strongest waves of one map (rows, plants along them) on
   /// those of the other.
   bool rows_on_rows = true;
-  int max_blocks = 10;        ///< of the most textured ones
-  double max_work = 150.0;    ///< limit of cells times correlations [10⁶], else coarser cells
-  double max_length = 12.0;   ///< longer strips are sought by their most textured stretch [m]
-  int peaks = 16;             ///< places looked at more closely, per coarse hypothesis
-  double min_inside = 0.3;    ///< least share of the blocks inside the fixed map
-  int climbs = 64;            ///< placements of the lattice from which the score is climbed
-  int candidates = 8;         ///< placements handed on
-  double separation = 0.3;    ///< placements whose corners differ by less are one [m]
-  correlation::MatchedFilterOptions filter;  ///< not listed: the evidence's, too
+  int max_blocks = 10;       ///< of the most textured ones
+  double max_work = 150.0;   ///< limit of cells times correlations [10⁶], else coarser cells
+  double max_length = 12.0;  ///< longer strips are sought by their most textured stretch [m]
+  int peaks = 16;            ///< places looked at more closely, per coarse hypothesis
+  double min_inside = 0.3;   ///< least share of the blocks inside the fixed map
+  int climbs = 64;           ///< placements of the lattice from which the score is climbed
+  int candidates = 8;        ///< placements handed on
+  double separation = 0.3;   ///< placements whose corners differ by less are one [m]
+  correlation::MatchedFilterOptions filter;  ///< not listed: the registration has one
 };
 void listOptions(OptionTable& table, CorrelationOptions& options);
 

@@ -115,7 +115,6 @@ RegistrationOptions resolved(const RegistrationOptions& chosen) {
   // Ground that is filled in has no colours.
   if (options.signal.term == map::DataTerm::kRgb) options.hidden.fill = false;
   options.search.filter = options.filter;
-  options.evidence.filter = options.filter;
   options.flow.seed = options.seed;
   options.affine.seed = options.seed;
   return options;

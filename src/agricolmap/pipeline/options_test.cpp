@@ -36,7 +36,6 @@ TEST(RegistrationOptions, WhatOneDecidesForOthersIsWrittenThere) {
   EXPECT_EQ(in_force.signal.term, map::DataTerm::kHeight);
   EXPECT_EQ(in_force.flow.describe.term, map::DataTerm::kHeight);
   EXPECT_EQ(in_force.search.filter.floor, 0.2);
-  EXPECT_EQ(in_force.evidence.filter.floor, 0.2);
   EXPECT_EQ(in_force.flow.seed, 9);
   EXPECT_EQ(in_force.affine.seed, 9);
   options = {};

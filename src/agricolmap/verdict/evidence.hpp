@@ -16,7 +16,6 @@ struct EvidenceOptions {
   double block_reach = 0.5;  ///< how far from its predicted place a block is looked for [m]
   double agreement = 0.08;   ///< a block agrees when its best place is this near [m]
   double exclusion = 0.35;   ///< other peaks are counted from this distance on [m]
-  correlation::MatchedFilterOptions filter;  ///< not listed: the search's, too
 };
 void listOptions(OptionTable& table, EvidenceOptions& options);
 

@@ -16,7 +16,7 @@ void listOptions(OptionTable& table, FlowOptions& options) {
   table.integer("levels", options.levels, 1, 7, "", "resolutions, each half the one before");
   table.integer("iterations", options.iterations, 1, 100, "",
                 "of propagation and random search per level");
-  table.integer("random_start", options.random_start, 1, 10000, "",
+  table.integer("random_start", options.random_start, 1, 1000, "",
                 "random displacements per seed at the coarsest level");
   table.number("refine_radius", options.refine_radius, 1.0, 100.0, "cells",
                "of the random search below the coarsest level");

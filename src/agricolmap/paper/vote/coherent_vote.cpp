@@ -15,9 +15,11 @@
 namespace agricolmap::paper {
 
 void listOptions(OptionTable& table, VoteOptions& options) {
-  table.number("step", options.step, 0.1, 100.0, "cells", "t_f in the paper: step of the vote")
+  // The work grows with the fifth power of a finer step: hypotheses in three dimensions, bins in
+  // two.
+  table.number("step", options.step, 0.5, 100.0, "cells", "t_f in the paper: step of the vote")
       .basic();
-  table.number("coarse", options.coarse, 1.0, 100.0, "t_f",
+  table.number("coarse", options.coarse, 4.0, 100.0, "t_f",
                "step of the search over heading and scales");
   table.number("tolerance", options.tolerance, 0.5, 100.0, "t_f",
                "largest distance of a coherent match from its placement");
