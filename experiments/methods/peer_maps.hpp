@@ -14,7 +14,7 @@
 
 namespace agricolmap::experiments {
 
-/// Stages 1 and 2 of the paper. Levelling and gridding are given to all peers alike: a method that
+/// Stages level and grid of the paper preset. Levelling and gridding are given to all peers alike: a method that
 /// works in the plane would else lose by a tilt that the ground says for nothing.
 struct PeerMaps {
   pipeline::PairFrames frames;

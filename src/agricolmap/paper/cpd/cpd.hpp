@@ -1,4 +1,4 @@
-// Stage 6: affine coherent point drift between vegetation points, from a good start to centimetres
+// Stage refine (paper Sec. IV): affine coherent point drift between vegetation points, from a good start to centimetres
 // (Myronenko & Song, "Point set registration: coherent point drift", TPAMI 2010).
 //
 // What differs from the article:
