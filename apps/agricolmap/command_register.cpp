@@ -136,6 +136,7 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   printWarnings(pair.moving.warnings);
   const pipeline::Registration result =
       pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor);
+  printWarnings(monitor.warnings());
   info.pictures = writeResults(arguments, options, pair, result, output, monitor);
   report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result,
                                 monitor, info);

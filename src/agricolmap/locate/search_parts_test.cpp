@@ -124,6 +124,18 @@ TEST_F(SearchPartsTest, DistinctCandidatesAreTheBestOfTheirPlaces) {
   EXPECT_EQ(distinctCandidates({truth(), turned}, 8, 0.3, strip_, space_).size(), 2U);
 }
 
+TEST_F(SearchPartsTest, WorkBeyondItsLimitIsSaid) {
+  CorrelationOptions options;
+  EXPECT_FALSE(searchByCorrelation(fixed_, moving_, space_, options).report.too_much_work);
+  options.max_work = 1.0;
+  const SearchReport coarser = searchByCorrelation(fixed_, moving_, space_, options).report;
+  EXPECT_GT(coarser.cell, options.cell);
+  options.max_work = 0.01;
+  const SearchReport report = searchByCorrelation(fixed_, moving_, space_, options).report;
+  EXPECT_TRUE(report.too_much_work);
+  EXPECT_GT(report.work, options.max_work);
+}
+
 TEST(Attempts, BecomeFinerAndThenFreer) {
   const CorrelationOptions options;
   const SearchReport restricted{.rows_on_rows = true};
