@@ -66,7 +66,8 @@ std::string Options::get(std::string_view name) const {
 std::vector<OptionInfo> Options::list() const {
   pipeline::RegistrationOptions defaults = pipeline::preset(kDefaultPreset);
   std::vector<OptionInfo> infos;
-  for (const OptionField& field : optionTable(defaults).fields()) {
+  const OptionTable table = optionTable(defaults);
+  for (const OptionField& field : table.fields()) {
     infos.push_back({field.path, field.unit, config::limitsText(field), config::optionText(field),
                      field.help, field.level == OptionLevel::kBasic});
   }
