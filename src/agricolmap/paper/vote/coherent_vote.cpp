@@ -13,11 +13,14 @@
 namespace agricolmap::paper {
 
 void describe(OptionTable& table, VoteOptions& options) {
+  table.choice("kind", options.kind, {"pose", "displacement"},
+               "what matches vote for: heading, scales and displacement, or the paper's "
+               "displacement alone");
   table.number("step", options.step, 0.1, 100.0, "cells", "t_f in the paper: step of the vote");
   table.number("coarse", options.coarse, 1.0, 100.0, "t_f",
-               "step of the search over heading and scales");
+               "step of the search over heading and scales; kind pose");
   table.number("tolerance", options.tolerance, 0.5, 100.0, "t_f",
-               "largest distance of a coherent match from its placement");
+               "largest distance of a coherent match from its placement; kind pose");
   table.integer("placements", options.placements, 1, 100, "", "distinct placements at most");
   table.integer("least", options.least, 3, 1000000, "", "votes that a placement needs");
 }
@@ -295,6 +298,9 @@ std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const S
                                          double cell, const VoteOptions& options) {
   checkOptions(options);
   const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
+  if (options.kind == VoteKind::kDisplacement) {
+    return voteDisplacement(matches, axes, cell, options);
+  }
   // The next placement is sought among the matches that those before leave unexplained.
   std::vector<Match> left(matches.begin(), matches.end());
   std::vector<std::uint32_t> index(matches.size());
