@@ -14,6 +14,8 @@ namespace agricolmap::paper {
 
 void describe(OptionTable& table, AffineOptions& options) {
   table.choice("model", options.model, {"scaled_rotation", "free"}, "what the transform may do");
+  table.flag("robust", options.robust,
+             "set outliers aside; off: least squares over all matches, as in the paper");
   table.number("tukey", options.tukey, 2.0, 20.0, "deviations", "residual that gets no weight");
   table.integer("least", options.least, 4, 1000000, "", "matches needed");
   table.integer("starts", options.starts, 1, 100000, "", "random minimal fits to start from");
@@ -99,6 +101,11 @@ class Problem {
     return *middle;
   }
 
+  /// Robust deviation of a residual's coordinate [m].
+  double deviationFrom(const Eigen::Affine2d& pose) const {
+    return std::max(kLeastSigma, median(residuals(pose, 1)) / kMedianToSigma);
+  }
+
   /// The random minimal fit with the smallest median residual.
   std::optional<Eigen::Affine2d> start() const {
     const std::size_t step = (matches_.size() + kScored - 1) / kScored;
@@ -138,7 +145,18 @@ class Problem {
       pose = *next;
       if (change < 1e-10) break;
     }
-    sigma = std::max(kLeastSigma, median(residuals(pose, 1)) / kMedianToSigma);
+    sigma = deviationFrom(pose);
+    return pose;
+  }
+
+  std::optional<Eigen::Affine2d> robustFit(double& sigma) const {
+    const auto from = start();
+    return from ? refine(*from, sigma) : std::nullopt;
+  }
+
+  std::optional<Eigen::Affine2d> plainFit(double& sigma) const {
+    const auto pose = fit(matches_, {});
+    if (pose) sigma = deviationFrom(*pose);
     return pose;
   }
 
@@ -169,16 +187,15 @@ AffineEstimate estimateAffine(std::span<const Match> matches, const Eigen::Matri
   const auto least = static_cast<std::size_t>(options.least);
   if (matches.size() < least) return failure(AffineStatus::kTooFewMatches, matches.size());
   const Problem problem(matches, scale_axes, options);
-  const auto start = problem.start();
-  if (!start) return failure(AffineStatus::kDegenerate, matches.size());
   AffineEstimate estimate;
-  const auto pose = problem.refine(*start, estimate.sigma);
+  const auto pose =
+      options.robust ? problem.robustFit(estimate.sigma) : problem.plainFit(estimate.sigma);
   if (!pose) return failure(AffineStatus::kDegenerate, matches.size());
   estimate.matches = matches.size();
   const std::vector<double> distance = problem.residuals(*pose, 1);
   double sum = 0.0;
   for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (distance[i] > options.tukey * estimate.sigma) continue;
+    if (options.robust && distance[i] > options.tukey * estimate.sigma) continue;
     sum += distance[i] * distance[i];
     estimate.inliers.push_back(static_cast<std::uint32_t>(i));
   }
