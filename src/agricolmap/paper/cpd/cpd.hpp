@@ -14,6 +14,7 @@
 //     the map shrinks or stretches by up to a per cent as the plants at its edges happen to lie.
 //     It needs the same surroundings in both maps, so points at the edge of what the moving map
 //     shows only lend their surroundings to others.
+// `kind = published` is the article's own algorithm (cpd_published.hpp) between the same points.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,6 +24,7 @@
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/map/vegetation.hpp"
+#include "agricolmap/paper/cpd/cpd_published.hpp"
 
 namespace agricolmap::paper {
 
@@ -35,7 +37,14 @@ enum class CpdModel {
   kRigid,       ///< shift, yaw: 3 parameters
 };
 
+enum class CpdKind {
+  kAdapted,    ///< as above, with all options but `published`
+  kPublished,  ///< the article's, with `published` alone
+};
+
 struct CpdOptions {
+  CpdKind kind = CpdKind::kAdapted;
+  PublishedCpdOptions published;
   CpdModel model = CpdModel::kAffine;
   double sigma_start = 0.15;    ///< σ of the first iteration: how wrong the start may be [m]
   double sigma_end = 0.025;     ///< least σ [m]
@@ -77,7 +86,8 @@ struct CpdResult {
   CpdPose pose;                ///< refined; the start unless usable()
   double sigma = 0.0;          ///< of the last iteration [m]
   double matched_share = 0.0;  ///< mean posterior of not being an outlier, of the data
-  double rms = 0.0;            ///< of what still pulls at the matched points [m]
+  double rms = 0.0;            ///< of what still pulls at the matched points; published: of all
+                               ///< pairs' distances by their posteriors [m]
   double motion = 0.0;         ///< largest motion of a moving point by the refinement [m]
   int iterations = 0;
   std::size_t fixed_points = 0;   ///< used
@@ -88,9 +98,11 @@ struct CpdResult {
   }
 };
 
-/// Refines `start`. `scale_axes`: directions of the moving file's x and y axes (unit columns) in
-/// the moving points' frame, used by CpdModel::kScaled. Failing to register is a status; the same
-/// result on any number of threads.
+/// Refines `start`. The article's kind takes the fixed points as data, those within the outline of
+/// the moving ones under `start`, and finds any affine map in three dimensions, however far; of its
+/// tilts the result keeps what they do to the plane at the points' mean height. `scale_axes`:
+/// directions of the moving file's x and y axes (unit columns) in the moving points' frame, used by
+/// CpdModel::kScaled. Failing to register is a status; the same result on any number of threads.
 CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
                       const std::vector<map::VegetationPoint>& moving, const CpdPose& start,
                       const CpdOptions& options,
