@@ -12,7 +12,7 @@ namespace agricolmap::paper {
 
 struct PublishedCpdOptions {
   double outlier_share = 0.1;  ///< w, share of fixed points expected to have no counterpart
-  int max_points = 5000;       ///< per cloud; more are merged to squares, for all pairs are visited
+  int max_points = 3000;       ///< per cloud; more are merged to squares, for all pairs are visited
   int max_iterations = 150;
   double tolerance = 1e-5;  ///< change of σ and of any point that ends it [m]
 };
