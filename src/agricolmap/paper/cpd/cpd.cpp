@@ -308,7 +308,6 @@ CpdResult refineAsPublished(const Points& fixed, const Points& moving, const Cpd
   plane.translation() = state.shift.head<2>() + state.linear.topRightCorner<2, 1>() * mean.z();
   result.pose.plane = plane * start.plane;
   const double rise = state.linear(2, 2);
-  result.pose.height_scale = rise * start.height_scale;
   result.pose.height_offset = rise * start.height_offset + state.shift.z() +
                               state.linear.bottomLeftCorner<1, 2>() * mean.head<2>();
   return result;
