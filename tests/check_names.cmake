@@ -1,17 +1,21 @@
-# cmake -DSOURCE_DIR=src/agricolmap -P check_names.cmake
+# cmake -DSOURCE_DIR=src/agricolmap -DPUBLIC_DIR=include/agricolmap -P check_names.cmake
 # Fails when two headers of one room define types of the same name: they share its namespace, and the
-# linker would keep the inline functions of one of them, destructors included, for both.
+# linker would keep the inline functions of one of them, destructors included, for both. The public
+# headers share theirs with core.
 cmake_minimum_required(VERSION 3.25)
-file(GLOB_RECURSE headers ${SOURCE_DIR}/*.hpp)
+file(GLOB_RECURSE headers ${SOURCE_DIR}/*.hpp ${PUBLIC_DIR}/*.hpp)
 # Those of the tests have a namespace of their own.
 list(FILTER headers EXCLUDE REGEX "/test_[^/]*$")
 set(names)
 foreach(header IN LISTS headers)
   file(RELATIVE_PATH room ${SOURCE_DIR} ${header})
   string(REGEX REPLACE "/.*" "" room "${room}")
-  file(STRINGS ${header} lines REGEX "^(struct|class|enum|enum class) [A-Za-z0-9_]+[^;]*{")
+  if(room MATCHES "^([.][.]|api)$")
+    set(room core)
+  endif()
+  file(STRINGS ${header} lines REGEX "^(struct|class|enum|enum class) (AGRICOLMAP_EXPORT )?[A-Za-z0-9_]+[^;]*{")
   foreach(line IN LISTS lines)
-    string(REGEX REPLACE "^(enum class|enum|struct|class) ([A-Za-z0-9_]+).*" "${room}::\\2" name "${line}")
+    string(REGEX REPLACE "^(enum class|enum|struct|class) (AGRICOLMAP_EXPORT )?([A-Za-z0-9_:]+).*" "${room}::\\3" name "${line}")
     if(name IN_LIST names)
       message(SEND_ERROR "${header} and ${header_of_${name}} both define ${name}")
     else()

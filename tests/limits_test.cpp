@@ -52,7 +52,8 @@ Registration registerTiny(const RegistrationOptions& options) {
 std::vector<std::string> allPaths() {
   RegistrationOptions options;
   std::vector<std::string> paths;
-  for (const OptionField& field : optionTable(options).fields()) paths.push_back(field.path);
+  const OptionTable table = optionTable(options);
+  for (const OptionField& field : table.fields()) paths.push_back(field.path);
   return paths;
 }
 

@@ -43,6 +43,19 @@ TEST(Pipeline, FindsTheTruthInUtmCoordinates) {
             0.5);
 }
 
+TEST(Pipeline, ItsStagesAddUpToTheTimeItTook) {
+  const simulate::SimulatedPair pair = smallPair(9);
+  for (const char* name : {"default", "paper"}) {
+    Monitor monitor;
+    pipeline::registerClouds(pair.uav, pair.ugv, pair.prior, pipeline::preset(name), monitor);
+    const double wall = monitor.seconds();
+    double sum = 0.0;
+    for (const StageTime& time : monitor.times()) sum += time.seconds;
+    EXPECT_GE(sum, 0.97 * wall) << name;
+    EXPECT_LE(sum, wall) << name;
+  }
+}
+
 TEST(Pipeline, WhereTheFieldLiesMakesNoDifference) {
   const simulate::SimulatedPair pair = smallPair(8);
   const pipeline::Registration here = registerPair(pair);

@@ -123,6 +123,7 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   if (arguments.fixed.empty() || arguments.moving.empty() || arguments.output.empty()) {
     throw UsageError("register needs FIXED, MOVING and -o DIR; see agricolmap register --help");
   }
+  requirePictures(arguments.no_pictures);
   // First of all, so that the work does not end at a folder that cannot be written.
   io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
@@ -135,6 +136,7 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   printWarnings(pair.moving.warnings);
   const pipeline::Registration result =
       pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor);
+  printWarnings(monitor.warnings());
   info.pictures = writeResults(arguments, options, pair, result, output, monitor);
   report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result,
                                 monitor, info);

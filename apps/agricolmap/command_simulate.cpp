@@ -88,6 +88,7 @@ ExitCode runSimulate(SimulateArguments& arguments, const Globals& globals) {
     return ExitCode::kOk;
   }
   if (arguments.output.empty()) throw UsageError("simulate needs -o DIR");
+  requirePictures(arguments.no_pictures);
   io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step("simulate");

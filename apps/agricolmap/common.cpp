@@ -7,6 +7,7 @@
 
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
+#include "agricolmap/report/pictures/pictures.hpp"
 
 namespace agricolmap {
 
@@ -48,6 +49,11 @@ std::string flagsFor(Remedy remedy) {
       break;
   }
   return {};
+}
+
+void requirePictures(bool no_pictures) {
+  if (no_pictures || report::canDraw()) return;
+  throw UsageError("this program was built without Cairo, which pictures need; say --no-pictures");
 }
 
 void printWarnings(const std::vector<std::string>& warnings) {

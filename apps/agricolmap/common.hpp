@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
-#include "exit_code.hpp"
+#include "support/exit_code.hpp"
 
 namespace agricolmap {
 
@@ -56,6 +56,8 @@ class Progress {
 
 /// The flags that are this remedy, as ` (--overwrite)`; empty where there are none.
 std::string flagsFor(Remedy remedy);
+/// Throws UsageError when pictures are asked for that this build cannot draw.
+void requirePictures(bool no_pictures);
 /// To stderr, one line each, unless --quiet.
 void printWarnings(const std::vector<std::string>& warnings);
 

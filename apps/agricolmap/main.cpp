@@ -11,6 +11,7 @@
 
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/processor.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 #include "support/signal_stop.hpp"
@@ -22,15 +23,6 @@ constexpr const char* kFooter =
     "Exit codes: 0 done, registration accepted; 1 internal error; 2 bad usage; 3 bad input;\n"
     "4 output cannot be written; 10 registration rejected; 11 ambiguous; 130 interrupted.\n"
     "Lengths are metres, clouds are PLY or PCD, transforms map MOVING to FIXED file coordinates.";
-
-void requireCpu() {
-#if defined(__x86_64__) && defined(__AVX2__)
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) {
-    throw Error(ErrorKind::kInternal,
-                "this processor has no AVX2/FMA; build with -DAGRICOLMAP_ARCH= for it");
-  }
-#endif
-}
 
 void setUpLogging(const Globals& globals) {
   spdlog::set_default_logger(spdlog::stderr_color_st("agricolmap"));
@@ -79,7 +71,7 @@ ExitCode run(int argc, char** argv) {
   }
   globals.seed_given = seed->count() > 0;
   setUpLogging(globals);
-  requireCpu();
+  requireProcessor();
   const SignalStop signals;
   globals.stop = signals.token();
   const StopScope scope(globals.stop);

@@ -1,38 +1,12 @@
-// A coloured point cloud with a double origin, so that UTM coordinates lose nothing in float.
+// What the library needs to know about clouds beside what its callers do.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <limits>
-#include <string>
-#include <vector>
+
+#include "agricolmap/cloud.hpp"
 
 namespace agricolmap {
-
-/// 8-bit colour as clouds and pictures store it.
-struct Rgb {
-  std::uint8_t r = 0;
-  std::uint8_t g = 0;
-  std::uint8_t b = 0;
-  bool operator==(const Rgb&) const = default;
-};
-
-/// Points in metres. A point's coordinates in its file are `origin + xyz[i]`.
-/// `rgb` is empty (no colours) or as long as `xyz`. All points are finite.
-struct Cloud {
-  std::string name;                                  ///< file it came from, for messages
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< file coordinates of the local zero [m]
-  std::vector<Eigen::Vector3f> xyz;                  ///< local coordinates [m]
-  std::vector<Rgb> rgb;                              ///< sensor colours, 0–255
-  std::size_t dropped_points = 0;                    ///< left out on reading: not finite or far off
-  std::vector<std::string> warnings;                 ///< what its reader found odd, file named
-
-  std::size_t size() const { return xyz.size(); }
-  bool empty() const { return xyz.empty(); }
-  bool hasColour() const { return !rgb.empty(); }
-  /// Point i in the coordinates of its file [m].
-  Eigen::Vector3d filePoint(std::size_t i) const { return origin + xyz[i].cast<double>(); }
-};
 
 /// Axis-aligned box of local coordinates; empty when `min > max`.
 struct Box3 {

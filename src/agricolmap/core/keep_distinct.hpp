@@ -9,9 +9,9 @@
 
 namespace agricolmap {
 
-/// Of a list sorted best first: the best, and in order every one that is not the `same(better,
-/// one)` as any kept before it, until there are `most`. Takes time in proportion to the list's
-/// length times the number that is kept.
+/// Of a list sorted best first: in order, each that is the same as none kept before it by
+/// `same(better, one)`, until there are `most`. Takes time in proportion to the list's length times
+/// the number that is kept.
 template <typename T, typename Same>
 std::vector<T> keepDistinct(std::vector<T> sorted, const Same& same,
                             std::size_t most = std::numeric_limits<std::size_t>::max()) {

@@ -211,6 +211,7 @@ SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
   kept = distinctCandidates(std::move(kept), options.candidates, options.separation, setup.strip,
                             space);
   SearchResult result;
+  const double work = setup.work(fixed.at(setup.factor));
   for (const Candidate& candidate : kept) {
     result.placements.push_back(placementOf(candidate, space));
   }
@@ -218,7 +219,9 @@ SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
                    .correlations = plan.coarse.size() * setup.blocks.size(),
                    .blocks = setup.blocks.size(),
                    .rows_on_rows = setup.by_rows,
-                   .cell = cell};
+                   .cell = cell,
+                   .work = work / 1e6,
+                   .too_much_work = work > options.max_work * 1e6};
   return result;
 }
 

@@ -39,6 +39,8 @@ struct SearchReport {
   std::size_t blocks = 0;        ///< of the moving map, that took part
   bool rows_on_rows = false;     ///< only headings and scales that lay rows on rows were tried
   double cell = 0.0;             ///< [m]
+  double work = 0.0;             ///< cells of the fixed map times correlations [10⁶]
+  bool too_much_work = false;    ///< more than the limit, even at the coarsest cells there may be
 };
 
 struct SearchResult {

@@ -1,4 +1,4 @@
-// Stage 2: the multimodal grid map (paper Sec. III-A): per cell a surface height and an Excess
+// Stage grid: the multimodal grid map (paper Sec. III-A): per cell a surface height and an Excess
 // Green index, both Gaussian-weighted means of the cell's points.
 #pragma once
 

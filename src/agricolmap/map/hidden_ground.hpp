@@ -23,6 +23,10 @@ void listOptions(OptionTable& table, HiddenGroundOptions& options);
 /// than 4 points on average the map stays as it is, as their number says nothing then: a cloud that
 /// was thinned to a point per voxel of a cell's size does not tell what was seen. Colours stay,
 /// too.
+///
+/// Bare is what is least green by `HiddenGroundOptions::bare` of the way from the map's tenth to
+/// its nine tenths. Under a canopy that closes that is its shade, and little changes there: soybean
+/// came out as well without the fill, tall maize better (docs/results.md).
 GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options);
 
 }  // namespace agricolmap::map

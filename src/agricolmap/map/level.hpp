@@ -1,4 +1,5 @@
-// Stage 1: level a cloud by its ground plane, so that "height" means height above the field.
+// Stage level (paper Sec. II): level a cloud by its ground plane, so that "height" means height
+// above the field.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
-// Stage 5: the preliminary transform from matched points (paper Sec. IV, Eq. 3): rotation, a scale
-// along each file axis and a shift, all that flat data can tell.
+// Stage refine: the preliminary transform from matched points (paper Sec. IV, Eq. 3): rotation, a
+// scale along each file axis and a shift, all that flat data can tell.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -14,11 +14,13 @@ constexpr int kBlockFactor = 2;
 constexpr std::size_t kOddBlock = 1;
 
 Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
-               const Eigen::Affine2d& pose, const Refined& refined,
+               const refine::RefinedPose& found, const Refined& refined,
                const RegistrationOptions& options, Monitor& monitor) {
+  const Eigen::Affine2d& pose = found.pose;
   Placed placed;
   placed.pose = pose;
   placed.placement = refined.best->start;
+  placed.refined_cell = found.factor * signals.moving().grid().frame.cell;
   placed.heights = monitor.run(Stage::kHeights, [&] {
     return refine::fitVertical(signals.fixed().grid(), signals.moving().grid(), pose,
                                options.vertical);
@@ -51,15 +53,15 @@ bool fitsBetter(const Placed& next, const Placed& before) {
 Measured measureStraightened(const refine::PairSignals& signals, const SearchSpace& space,
                              const Refined& refined, const RegistrationOptions& options,
                              Monitor& monitor) {
-  const auto at = [&](const Eigen::Affine2d& pose) {
-    return measure(signals, space, pose, refined, options, monitor);
+  const auto at = [&](const refine::RefinedPose& found) {
+    return measure(signals, space, found, refined, options, monitor);
   };
-  Measured measured{at(refined.best->pose), {}};
+  Measured measured{at(*refined.best), {}};
   // The paper's own refinement stays as it is.
-  if (options.refine != RefineKind::kDense) return measured;
+  if (options.refine != RefineKind::kDense || !options.straighten) return measured;
   const auto straight = verdict::straightenedPose(measured.placed.evidence, space.scale_axes);
   if (!straight) return measured;
-  Placed laid = at(*straight);
+  Placed laid = at({.pose = *straight});
   measured.straightened = false;
   if (laid.evidence.agreeing <= measured.placed.evidence.agreeing + kOddBlock) return measured;
   const auto take = [&](Placed next) {
@@ -71,7 +73,7 @@ Measured measureStraightened(const refine::PairSignals& signals, const SearchSpa
   // It may not have been bent, but caught at the edge of the refinement's basin.
   const auto finer = monitor.run(
       Stage::kRefine, [&] { return refine::refineFrom(signals, *straight, options.dense); });
-  if (finer) take(at(finer->pose));
+  if (finer) take(at(*finer));
   return measured;
 }
 

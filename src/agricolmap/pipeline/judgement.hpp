@@ -18,8 +18,9 @@ struct Placed {
   refine::VerticalResult heights;
   verdict::Evidence evidence;
   std::optional<verdict::PoseUncertainty> uncertainty;  ///< nothing when few blocks can be compared
-  double overlap = 0.0;      ///< share of the moving map's cells that the fixed map sees
-  double correlation = 0.0;  ///< of the dense signals
+  double overlap = 0.0;       ///< share of the moving map's cells that the fixed map sees
+  double correlation = 0.0;   ///< of the dense signals
+  double refined_cell = 0.0;  ///< of the finest map that the refinement could follow [m]; 0: none
 };
 
 /// Heights and evidence at the refined pose and, where neighbouring blocks of the strip are

@@ -8,6 +8,8 @@
 #include "agricolmap/core/monitor.hpp"
 #include "agricolmap/locate/correlation_search.hpp"
 #include "agricolmap/paper/flow_association.hpp"
+#include "agricolmap/pipeline/maps.hpp"
+#include "agricolmap/refine/pair_signals.hpp"
 
 namespace agricolmap::pipeline {
 
@@ -22,5 +24,12 @@ struct Located {
 /// Another way to find placements, in the chain unchanged otherwise. Must be deterministic.
 using Locator = std::function<Located(const map::GridMap& fixed, const map::GridMap& moving,
                                       const SearchSpace& space, Monitor& monitor)>;
+
+/// Where may the moving map lie? Sec. III-B, or the correlation search with the options `search`,
+/// as the options say; by `locator` where it is not empty. Stage kLocate and, of the paper's way,
+/// those within it.
+Located locate(const PairMaps& maps, const refine::PairSignals& signals,
+               const locate::CorrelationOptions& search, const RegistrationOptions& options,
+               const Locator& locator, Monitor& monitor);
 
 }  // namespace agricolmap::pipeline

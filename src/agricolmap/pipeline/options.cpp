@@ -24,6 +24,10 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
       .basic();
   table.integer("seed", options.seed, 0, 2147483647, "", "what everything random follows from")
       .basic();
+  table.flag(
+      "straighten", options.straighten,
+      "lay a strip by its blocks where neighbouring ones are displaced alike, as by drift, if "
+      "it then fits better");
   table.group("prior", options.prior, "how wrong the initial guess may be");
   table.group("level", options.level, "levelling");
   table.group("grid", options.grid, "the grid maps");
@@ -68,6 +72,7 @@ constexpr std::array kNeeds = {
     Need{"flow.", flows, "association = flow"},
     Need{"affine.", flows, "association = flow"},
     Need{"dense.", refinesDensely, "refine = dense"},
+    Need{"straighten", refinesDensely, "refine = dense"},
     Need{"vegetation.", refinesByPoints, "refine = cpd"},
     Need{"cpd.", refinesByPoints, "refine = cpd"},
     Need{"signal.term",

@@ -31,6 +31,7 @@ struct RegistrationOptions {
   AssociationKind association = AssociationKind::kCorrelation;
   RefineKind refine = RefineKind::kDense;
   int seed = 1;
+  bool straighten = true;  ///< lay strips that drift has bent by their blocks
   PriorUncertainty prior;
   map::LevelOptions level;
   map::GridOptions grid;

@@ -12,7 +12,8 @@ namespace {
 TEST(RegistrationOptions, AboutThirtyAreForUsers) {
   RegistrationOptions options;
   int basic = 0;
-  for (const OptionField& field : optionTable(options).fields()) {
+  const OptionTable table = optionTable(options);
+  for (const OptionField& field : table.fields()) {
     if (field.level == OptionLevel::kBasic) ++basic;
   }
   EXPECT_GE(basic, 25);
@@ -23,7 +24,8 @@ TEST(RegistrationOptions, EveryGroupSaysWhatItIsAbout) {
   RegistrationOptions options;
   const OptionTable table = optionTable(options);
   for (const OptionField& field : table.fields()) {
-    if (!field.group().empty()) EXPECT_FALSE(table.titleOf(field.group()).empty()) << field.path;
+    if (field.group().empty()) continue;
+    EXPECT_FALSE(table.titleOf(field.group()).empty()) << field.path;
   }
 }
 

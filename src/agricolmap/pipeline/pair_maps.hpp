@@ -1,4 +1,4 @@
-// Stages 1 and 2: from two clouds and an initial guess to levelled, gridded maps.
+// Stages level and grid: from two clouds and an initial guess to levelled, gridded maps.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -53,7 +53,7 @@ Refined refineDensely(const refine::PairSignals& signals, const std::vector<Plac
 }
 
 Refined refineByPoints(const refine::PairSignals& signals, const Eigen::Affine2d& start,
-                       const Eigen::Matrix2d& scale_axes, const RegistrationOptions& options) {
+                       const RegistrationOptions& options) {
   // What lies far from the strip is of no use, and on a large map costs more than all the rest.
   const map::GridMap around = signals.fixedUnder(start, kVegetationRim);
   const map::GridMap& strip = signals.moving().grid();
@@ -96,9 +96,14 @@ Refined refinePlacements(const refine::PairSignals& signals,
   if (options.refine == RefineKind::kDense) {
     return refineDensely(signals, placements, scale_axes, options);
   }
-  const auto start = startOf(placements.front(), scale_axes, options.affine);
-  if (!start) return failed("the coherent matches determine no affine");
-  return refineByPoints(signals, *start, scale_axes, options);
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    const auto start = startOf(placements[i], scale_axes, options.affine);
+    if (!start) continue;
+    Refined refined = refineByPoints(signals, *start, options);
+    if (refined.best) refined.best->start = i;
+    return refined;
+  }
+  return failed("the coherent matches of no placement determine an affine");
 }
 
 }  // namespace agricolmap::pipeline

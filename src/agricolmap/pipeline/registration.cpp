@@ -18,27 +18,6 @@ refine::PairSignals signalsOf(const correlation::MapSignals& fixed,
   });
 }
 
-/// Where may the moving map lie? Sec. III-B, or the correlation search.
-Located locate(const PairMaps& maps, const refine::PairSignals& signals,
-               const locate::CorrelationOptions& search, const RegistrationOptions& options,
-               const Locator& locator, Monitor& monitor) {
-  return monitor.run(Stage::kLocate, [&]() -> Located {
-    if (locator) return locator(maps.fixed, maps.moving, maps.space, monitor);
-    if (options.association == AssociationKind::kFlow) {
-      paper::FlowResult found =
-          paper::associateByFlow(maps.fixed, maps.moving, maps.space, options.flow, monitor);
-      return {std::move(found.placements),
-              std::move(found.matches),
-              std::move(found.rematches),
-              {},
-              found.report};
-    }
-    locate::SearchResult found =
-        locate::searchByCorrelation(signals.fixed(), signals.moving(), maps.space, search);
-    return {std::move(found.placements), {}, {}, found.report, {}};
-  });
-}
-
 /// From placements to an answer: refine (Eq. 3 and Sec. IV, or densely), heights, verdict.
 /// `rivals`: other places that are known already; nothing: those that hold when refined.
 Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located located,

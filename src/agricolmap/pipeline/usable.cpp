@@ -32,6 +32,15 @@ void requireUsable(const Cloud& fixed, const Cloud& moving, const RegistrationOp
   }
 }
 
+std::string workExceeded(const locate::SearchReport& report,
+                         const locate::CorrelationOptions& options) {
+  return fmt::format(
+      "the search took {:.1f} times the work that search.max_work allows, even at cells of {:.2f} "
+      "m: the fixed map is large for a guess as wide as this one; a narrower guess or a smaller "
+      "fixed cloud is faster",
+      report.work / options.max_work, report.cell);
+}
+
 InputError fitsAtNoScale(const Cloud& fixed, const Cloud& moving) {
   return InputError(fmt::format(
       "{}: at no scale between 0.1 and 10 does it fit into the fixed map {} and still hold more "

@@ -12,6 +12,10 @@ namespace agricolmap::pipeline {
 void requireUsable(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
                    bool located_otherwise);
 
+/// That a search took more work than it is meant to, and what would spare it.
+std::string workExceeded(const locate::SearchReport& report,
+                         const locate::CorrelationOptions& options);
+
 /// Why a moving file of unknown scale was not even looked for.
 InputError fitsAtNoScale(const Cloud& fixed, const Cloud& moving);
 

@@ -1,5 +1,5 @@
-// Stage 7b, too: Gauss–Newton ends in the basin it starts in. Where plants stand as close as the
-// coarser cells are wide, as in drilled wheat, that was the neighbouring one for three of six
+// Stage refine, too: Gauss–Newton ends in the basin it starts in. Where plants stand as close as
+// the coarser cells are wide, as in drilled wheat, that was the neighbouring one for three of six
 // simulated strips: 2 to 5 cm off, or sheared, with all blocks in agreement.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Dense refinement: Gauss–Newton on the signal maps themselves, coarse to fine, for a
+// Stage refine: densely, by Gauss–Newton on the signal maps themselves, coarse to fine, for a
 // horizontal affine. Robust against what the two views do not share (leaves, weeds, shadows).
 #pragma once
 

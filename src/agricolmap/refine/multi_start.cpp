@@ -20,8 +20,10 @@ constexpr int kBasinFactor = 2;
 constexpr double kLeastFinerOverlap = 0.5;
 
 /// One level for all poses; those that do not hold are left out.
-std::vector<RefinedPose> refineLevel(const SignalPair& level, const std::vector<RefinedPose>& poses,
+std::vector<RefinedPose> refineLevel(const PairSignals& signals, int factor,
+                                     const std::vector<RefinedPose>& poses,
                                      const DenseRefineOptions& options) {
+  const SignalPair level = signals.whole(factor);
   std::vector<Eigen::Affine2d> starts;
   starts.reserve(poses.size());
   for (const RefinedPose& pose : poses) starts.push_back(pose.pose);
@@ -30,8 +32,8 @@ std::vector<RefinedPose> refineLevel(const SignalPair& level, const std::vector<
   std::vector<RefinedPose> held;
   for (std::size_t i = 0; i < refined.size(); ++i) {
     if (refined[i].status != RefineStatus::kConverged) continue;
-    held.push_back(
-        {refined[i].fixed_from_moving, poses[i].significance, refined[i].overlap, poses[i].start});
+    held.push_back({refined[i].fixed_from_moving, poses[i].significance, refined[i].overlap,
+                    poses[i].start, factor});
   }
   return held;
 }
@@ -41,9 +43,9 @@ std::vector<RefinedPose> refineLevel(const SignalPair& level, const std::vector<
 RankedPoses refineStarts(const PairSignals& signals, std::span<const Eigen::Affine2d> starts,
                          double exclusion, const DenseRefineOptions& options) {
   std::vector<RefinedPose> poses;
-  for (std::size_t i = 0; i < starts.size(); ++i) poses.push_back({starts[i], 0.0, 0.0, i});
+  for (std::size_t i = 0; i < starts.size(); ++i) poses.push_back({starts[i], 0.0, 0.0, i, 0});
   for (const int factor : {kCoarseFactor, kRankingFactor}) {
-    poses = refineLevel(signals.whole(factor), poses, options);
+    poses = refineLevel(signals, factor, poses, options);
   }
   const correlation::StripScore& score = signals.score();
   parallelFor(poses.size(),
@@ -73,14 +75,14 @@ RefinedPose refineFinely(const PairSignals& signals, const RefinedPose& start,
     }
     best.pose = finer.fixed_from_moving;
     best.overlap = finer.overlap;
+    best.factor = factor;
   }
   return best;
 }
 
 std::optional<RefinedPose> refineFrom(const PairSignals& signals, const Eigen::Affine2d& pose,
                                       const DenseRefineOptions& options) {
-  const std::vector<RefinedPose> ranked =
-      refineLevel(signals.whole(kRankingFactor), {{pose}}, options);
+  const std::vector<RefinedPose> ranked = refineLevel(signals, kRankingFactor, {{pose}}, options);
   if (ranked.empty()) return std::nullopt;
   return refineFinely(signals, ranked.front(), options);
 }

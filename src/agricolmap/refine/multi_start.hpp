@@ -17,6 +17,7 @@ struct RefinedPose {
   double significance = 0.0;  ///< at the ranking level, see StripScore
   double overlap = 0.0;       ///< share of the moving map's cells with a fixed cell to compare with
   std::size_t start = 0;      ///< index of the start that it was refined from
+  int factor = 0;             ///< grid cells a cell at the finest level reached; 0: not on maps
 };
 
 struct RankedPoses {

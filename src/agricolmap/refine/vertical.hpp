@@ -1,5 +1,6 @@
-// Stage 7c: the vertical part of the registration, once the plane is known. Tilt and offset come
-// from the ground; canopy, which looks lower from above than from the side, must not bias them.
+// Stage heights: the vertical part of the registration, once the plane is known. Tilt and offset
+// come from the ground; canopy, which looks lower from above than from the side, must not bias
+// them.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// Stage 7d: a strip that drift has bent. The dense refinement locks on to the part that fits a
+// Stage judge: a strip that drift has bent. The dense refinement locks on to the part that fits a
 // single affine and leaves the rest beside its plants; the blocks of the evidence, each placed
 // alone, tell how far.
 #pragma once

@@ -1,4 +1,4 @@
-// Stage 8: accept, reject or say that the data cannot tell, from evidence, with the reasons in
+// Stage judge: accept, reject or say that the data cannot tell, from evidence, with the reasons in
 // plain words.
 #pragma once
 

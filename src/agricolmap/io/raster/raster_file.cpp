@@ -18,17 +18,6 @@
 
 namespace agricolmap::io {
 
-void listOptions(OptionTable& table, RasterOptions& options) {
-  table
-      .choice("bands", options.bands, {"auto", "rgb", "rbg", "grb", "gbr", "brg", "bgr"},
-              "colours of the picture's first three bands; auto: as the file declares")
-      .basic();
-  table
-      .flag("black_is_nodata", options.black_is_nodata,
-            "treat black as no data where the picture declares neither nodata nor alpha")
-      .basic();
-}
-
 namespace {
 
 constexpr double kMaxPixels = 1e9;
@@ -333,20 +322,6 @@ RasterHeights readHeights(const std::filesystem::path& path, const RasterPart& p
   }
   if (valid == 0) throw InputError(fmt::format("{}: no pixel has a height", heights.name));
   return heights;
-}
-
-void removeFarHeights(Raster<float>& heights, double max_height) {
-  const std::size_t step = std::max<std::size_t>(1, heights.size() / kSampleSize);
-  std::vector<float> sample;
-  for (std::size_t i = 0; i < heights.size(); i += step) {
-    if (!std::isnan(heights[i])) sample.push_back(heights[i]);
-  }
-  if (sample.empty()) return;
-  const float middle = median(sample);
-  const auto limit = static_cast<float>(max_height);
-  for (float& height : heights) {
-    if (std::abs(height - middle) > limit) height = std::numeric_limits<float>::quiet_NaN();
-  }
 }
 
 }  // namespace agricolmap::io

@@ -70,14 +70,4 @@ std::optional<std::string> checkSameCrs(const std::string& name, const RasterPla
   return std::nullopt;
 }
 
-std::string extentOf(const RasterPlace& place, int rows, int cols) {
-  Eigen::AlignedBox2d box;
-  for (const auto& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(cols, 0),
-                             Eigen::Vector2d(0, rows), Eigen::Vector2d(cols, rows)}) {
-    box.extend(*place.world_from_pixel * corner);
-  }
-  return fmt::format("{:.1f}..{:.1f}, {:.1f}..{:.1f}", box.min().x(), box.max().x(), box.min().y(),
-                     box.max().y());
-}
-
 }  // namespace agricolmap::io

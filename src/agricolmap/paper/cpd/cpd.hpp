@@ -1,5 +1,6 @@
-// Stage 6: affine coherent point drift between vegetation points, from a good start to centimetres
-// (Myronenko & Song, "Point set registration: coherent point drift", TPAMI 2010).
+// Stage refine (paper Sec. IV): affine coherent point drift between vegetation points, from a good
+// start to centimetres (Myronenko & Song, "Point set registration: coherent point drift", TPAMI
+// 2010).
 //
 // What differs from the article:
 // (1) The fixed points are the mixture and the moving ones the data: the ground robot's strip is

@@ -1,4 +1,4 @@
-// Stage 3: dense descriptors of a grid map, at several resolutions.
+// Stage describe (paper Sec. III-B): dense descriptors of a grid map, at several resolutions.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,7 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/report/draw/png_file.hpp"
-#include "agricolmap/report/draw/utf8.hpp"
+#include "agricolmap/report/json/utf8.hpp"
 
 namespace agricolmap::report {
 namespace {

@@ -9,7 +9,7 @@
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/report/counts.hpp"
-#include "agricolmap/report/draw/utf8.hpp"
+#include "agricolmap/report/json/utf8.hpp"
 
 namespace agricolmap::report {
 namespace {
@@ -125,6 +125,8 @@ Json residualsJson(const pipeline::Registration& registration) {
   json["correlation"] = number(registration.placed->correlation);
   json["signal"] = number(std::sqrt(2.0 - 2.0 * registration.placed->correlation));
   json["overlap"] = number(registration.placed->overlap);
+  const double cell = registration.placed->refined_cell;
+  json["refined_cell_m"] = cell > 0.0 ? Json(cell) : Json(nullptr);
   json["match_rms_m"] = number(matchResidual(registration));
   json["block_rms_m"] = number(blockResidual(registration.placed->evidence));
   const refine::VerticalResult& vertical = registration.placed->heights;
@@ -225,7 +227,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
   std::vector<std::string> warnings = fixed.warnings;
-  warnings.insert(warnings.end(), moving.warnings.begin(), moving.warnings.end());
+  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
+    warnings.insert(warnings.end(), more->begin(), more->end());
+  }
   json["warnings"] = stringsJson(warnings);
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);

@@ -17,6 +17,9 @@ struct PictureInfo {
   verdict::EvidenceOptions evidence;       ///< those the registration was judged with
 };
 
+/// Whether this build can draw; without Cairo, what follows throws UsageError.
+bool canDraw();
+
 /// Names of all files that writePictures may write, e.g. to clear those of an earlier run.
 std::vector<std::string> pictureNames();
 

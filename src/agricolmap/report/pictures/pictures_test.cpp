@@ -12,7 +12,7 @@
 #include "agricolmap/report/draw/picture_canvas.hpp"
 #include "agricolmap/report/draw/png_file.hpp"
 #include "agricolmap/report/draw/test_picture.hpp"
-#include "agricolmap/report/draw/utf8.hpp"
+#include "agricolmap/report/json/utf8.hpp"
 #include "agricolmap/report/test_registration.hpp"
 
 namespace agricolmap::report {

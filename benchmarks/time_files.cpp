@@ -1,0 +1,266 @@
+// agricolmap_time_files: wall time and memory of `agricolmap register` from files to files, and of
+// reading and gridding alone beside it.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/simulate/simulate.hpp"
+#include "support/exit_code.hpp"
+
+namespace agricolmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string output;
+  std::string program;
+  std::string fixed;
+  std::string moving;
+  std::string prior;
+  std::vector<int> threads = {1, 2};
+  std::string preset = "default";
+  int repeats = 3;
+  int seed = 4242;
+  bool baseline = false;  ///< be the program that reads and grids
+  std::string make_pair;  ///< be the program that writes the pair into this folder
+};
+
+/// A folder that goes with the program.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string name = (fs::temp_directory_path() / "agricolmap_time_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw OutputError(fmt::format("{}: cannot be made; set TMPDIR", name));
+    }
+    path_ = name;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+struct ProcessCost {
+  double wall_s = 0.0;
+  double cpu_s = 0.0;
+  double peak_mib = 0.0;
+};
+
+double secondsOf(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// Runs a program to its end. `accepted_codes`: exit codes that are an answer.
+ProcessCost runProgram(const std::vector<std::string>& command,
+                       const std::vector<int>& accepted_codes) {
+  std::vector<char*> argv;
+  for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  pid_t pid = 0;
+  const Stopwatch watch;
+  if (const int error = ::posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ)) {
+    throw UsageError(fmt::format("{}: cannot be run: {}", command[0], std::strerror(error)));
+  }
+  int status = 0;
+  rusage usage{};
+  while (::wait4(pid, &status, 0, &usage) < 0) {
+    if (errno != EINTR) throw Error(ErrorKind::kInternal, "wait4 failed");
+  }
+  const ProcessCost cost = {watch.seconds(), secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime),
+                            static_cast<double>(usage.ru_maxrss) / 1024.0};
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (std::find(accepted_codes.begin(), accepted_codes.end(), code) == accepted_codes.end()) {
+    throw Error(ErrorKind::kInternal,
+                fmt::format("'{}' ended with code {}", fmt::join(command, " "), code));
+  }
+  return cost;
+}
+
+/// Writes a pair of about 2 and 1 million points with the largest guess errors.
+void writePair(int seed, const fs::path& folder) {
+  simulate::SimulationOptions simulation = simulate::cropPreset(simulate::Crop::kSoybean);
+  simulation.seed = seed;
+  simulation.geotag.translation = 5.0;
+  simulation.geotag.heading_deg = 11.5;
+  simulation.geotag.scale = 0.3;
+  const simulate::SimulatedPair pair = simulate::simulatePair(simulation);
+  io::writePly(folder / "uav.ply", pair.uav);
+  io::writePly(folder / "ugv.ply", pair.ugv);
+  io::writeMatrix(folder / "prior.txt", pair.prior);
+}
+
+/// The same in a process of its own: the system counts what a parent holds towards its children's
+/// peak memory.
+void makePair(Arguments& arguments, const fs::path& folder) {
+  runProgram({fs::read_symlink("/proc/self/exe").string(), "--make-pair", folder.string(), "--seed",
+              std::to_string(arguments.seed)},
+             {0});
+  arguments.fixed = folder / "uav.ply";
+  arguments.moving = folder / "ugv.ply";
+  arguments.prior = folder / "prior.txt";
+}
+
+/// What every program of this kind must do at least: read both files and lay all points into maps.
+void readAndGrid(const Arguments& arguments) {
+  const ThreadLimit limit(arguments.threads.front());
+  const pipeline::RegistrationOptions options = pipeline::preset("default");
+  Cloud clouds[2];
+  parallelFor(2, [&](std::size_t i) {
+    clouds[i] = io::readCloud(i == 0 ? arguments.fixed : arguments.moving);
+  });
+  for (const Cloud& cloud : clouds) {
+    const map::Levelling level = map::levelCloud(cloud, Eigen::Affine3d::Identity(), options.level);
+    map::Box2 box;
+    for (const Eigen::Vector3f& p : cloud.xyz) {
+      box.extend((level.levelled_from_guess * p.cast<double>()).head<2>().eval());
+    }
+    const map::GridMap map = map::makeGridMap(cloud, level.levelled_from_guess, box, options.grid);
+    if (map.filled == 0) throw InputError(cloud.name + ": no cell is filled");
+  }
+}
+
+std::string costLines(const std::string& program, int threads, int repeat,
+                      const ProcessCost& cost) {
+  const std::string head = fmt::format("{},{},{}", program, threads, repeat);
+  return fmt::format("{0},wall_s,{1:.4f}\n{0},cpu_s,{2:.4f}\n{0},peak_mib,{3:.1f}\n", head,
+                     cost.wall_s, cost.cpu_s, cost.peak_mib);
+}
+
+std::string timeRegister(const Arguments& arguments, const fs::path& folder, int threads,
+                         int repeat) {
+  const fs::path results = folder / "results";
+  std::vector<std::string> command = {arguments.program,
+                                      "register",
+                                      arguments.fixed,
+                                      arguments.moving,
+                                      "-o",
+                                      results.string(),
+                                      "--preset",
+                                      arguments.preset,
+                                      "--threads",
+                                      std::to_string(threads),
+                                      "-q",
+                                      "--overwrite",
+                                      "--no-pictures"};
+  if (!arguments.prior.empty()) command.insert(command.end(), {"--prior", arguments.prior});
+  const ProcessCost cost = runProgram(command, {0, static_cast<int>(ExitCode::kRejected)});
+  const std::string name = "register-" + arguments.preset;
+  std::string lines = costLines(name, threads, repeat, cost);
+  std::ifstream file(results / "registration.json");
+  const nlohmann::ordered_json report = nlohmann::ordered_json::parse(file);
+  for (const auto& [stage, seconds] : report.at("times").at("stages").items()) {
+    lines += fmt::format("{},{},{},stage_{},{:.4f}\n", name, threads, repeat, stage,
+                         seconds.get<double>());
+  }
+  fmt::print("{:18} {} threads: {:.2f} s wall, {:.2f} s CPU, {:.0f} MiB\n", name, threads,
+             cost.wall_s, cost.cpu_s, cost.peak_mib);
+  return lines;
+}
+
+std::string timeBaseline(const Arguments& arguments, int threads, int repeat) {
+  const ProcessCost cost = runProgram(
+      {fs::read_symlink("/proc/self/exe").string(), "--baseline", "--fixed", arguments.fixed,
+       "--moving", arguments.moving, "--threads", std::to_string(threads)},
+      {0});
+  fmt::print("{:18} {} threads: {:.2f} s wall, {:.2f} s CPU, {:.0f} MiB\n", "read-and-grid",
+             threads, cost.wall_s, cost.cpu_s, cost.peak_mib);
+  return costLines("read-and-grid", threads, repeat, cost);
+}
+
+void measure(Arguments arguments) {
+  if (arguments.fixed.empty() != arguments.moving.empty()) {
+    throw UsageError("--fixed and --moving belong together");
+  }
+  io::StagedFile output(arguments.output, true);
+  if (arguments.program.empty()) {
+    arguments.program = fs::read_symlink("/proc/self/exe").parent_path() / "agricolmap";
+  }
+  const WorkFolder folder;
+  if (arguments.fixed.empty()) makePair(arguments, folder.path());
+  std::string text = "program,threads,repeat,quantity,value\n";
+  for (int repeat = 1; repeat <= arguments.repeats; ++repeat) {
+    for (const int threads : arguments.threads) {
+      text += timeBaseline(arguments, threads, repeat);
+      text += timeRegister(arguments, folder.path(), threads, repeat);
+    }
+  }
+  io::writeText(output.path(), text);
+  output.commit();
+}
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"Times `agricolmap register` from files to files."};
+  app.name("agricolmap_time_files");
+  app.add_option("-o,--output", arguments.output, "CSV file");
+  app.add_option("--agricolmap", arguments.program, "The program [beside this one]");
+  app.add_option("--fixed", arguments.fixed, "Fixed cloud [a simulated pair]");
+  app.add_option("--moving", arguments.moving, "Moving cloud");
+  app.add_option("--prior", arguments.prior, "Initial guess");
+  app.add_option("--threads", arguments.threads, "Numbers of threads [1,2]")->delimiter(',');
+  app.add_option("--preset", arguments.preset, "Preset [default]");
+  app.add_option("--repeats", arguments.repeats, "Repeats [3]")->check(CLI::Range(1, 1000));
+  app.add_option("--seed", arguments.seed, "Seed of the simulated pair [4242]");
+  app.add_flag("--baseline", arguments.baseline, "Read and grid --fixed and --moving and stop");
+  app.add_option("--make-pair", arguments.make_pair, "Write the simulated pair there and stop");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+  }
+  if (arguments.baseline) {
+    readAndGrid(arguments);
+    return 0;
+  }
+  if (!arguments.make_pair.empty()) {
+    writePair(arguments.seed, arguments.make_pair);
+    return 0;
+  }
+  if (arguments.output.empty()) throw UsageError("needs --output FILE; see --help");
+  measure(arguments);
+  return 0;
+}
+
+}  // namespace
+}  // namespace agricolmap
+
+int main(int argc, char** argv) {
+  try {
+    return agricolmap::run(argc, argv);
+  } catch (const agricolmap::Error& error) {
+    fmt::print(stderr, "agricolmap_time_files: {}\n", error.what());
+    return static_cast<int>(agricolmap::exitCodeOf(error.kind()));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "agricolmap_time_files: {}\n", error.what());
+    return static_cast<int>(agricolmap::ExitCode::kInternal);
+  }
+}

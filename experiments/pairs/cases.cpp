@@ -1,0 +1,75 @@
+#include "experiments/pairs/cases.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "agricolmap/config/yaml.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/random.hpp"
+#include "experiments/pairs/hash.hpp"
+
+namespace agricolmap::experiments {
+namespace {
+
+/// What the drone's cloud depends on, see Case::flightText.
+bool belongsToFlight(const std::string& path) {
+  static const std::vector<std::string> flight = {"views.leaf_unshared", "views.wind",
+                                                  "views.sun_hour", "views.overcast"};
+  return path.starts_with("field.") || path.starts_with("uav.") ||
+         std::find(flight.begin(), flight.end(), path) != flight.end();
+}
+
+}  // namespace
+
+std::string kindOf(PairSource source) {
+  if (source == PairSource::kPublished) return "real";
+  return source == PairSource::kSimulated ? "simulated" : "semi-real";
+}
+
+simulate::SimulationOptions Case::optionsFor(int seed) const {
+  simulate::SimulationOptions drawn = options;
+  drawn.seed = fieldSeed(seed);
+  const OptionTable table = optionTable(drawn);
+  for (const OptionRange& range : ranges) {
+    const OptionField* field = table.find(range.path);
+    if (field == nullptr || !std::holds_alternative<double*>(field->value)) {
+      throw UsageError(fmt::format("case {}: no number is called {}", name, range.path));
+    }
+    const int of = belongsToFlight(range.path) ? fieldSeed(seed) : seed;
+    Random random = Random::stream(static_cast<std::uint64_t>(of), hashText(range.path));
+    *std::get<double*>(field->value) = range.values.empty()
+                                           ? random.uniform(range.low, range.high)
+                                           : range.values[random.below(range.values.size())];
+  }
+  return drawn;
+}
+
+std::string Case::flightText(int seed) const {
+  simulate::SimulationOptions flown = optionsFor(seed);
+  const simulate::GeotagOptions geotag = flown.geotag;
+  const simulate::SimulationOptions usual;
+  flown.ugv = usual.ugv;
+  flown.geotag = usual.geotag;
+  flown.geotag.utm = geotag.utm;
+  flown.views.growth = usual.views.growth;
+  flown.views.sun_hours = usual.views.sun_hours;
+  flown.views.weeds_pulled = usual.views.weeds_pulled;
+  flown.other_field = flown.beyond_map = flown.mirrored = false;
+  return fmt::format("{} {}", static_cast<int>(source), config::dumpYaml(optionTable(flown)));
+}
+
+std::string Case::text() const {
+  simulate::SimulationOptions copy = options;
+  std::string text = fmt::format("{} {} {}\n{}", name, static_cast<int>(source), strips_per_field,
+                                 config::dumpYaml(optionTable(copy)));
+  for (const OptionRange& range : ranges) {
+    text += fmt::format("{} {} {} {}\n", range.path, range.low, range.high,
+                        fmt::join(range.values, " "));
+  }
+  if (published) text += publishedText(*published);
+  return text;
+}
+
+}  // namespace agricolmap::experiments

@@ -1,0 +1,293 @@
+// agricolmap_experiments: what methods come to on pairs with known truth.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/interrupt.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "experiments/pairs/published_cases.hpp"
+#include "experiments/runner/campaign.hpp"
+#include "experiments/runner/register_one.hpp"
+#include "revision.hpp"
+#include "support/exit_code.hpp"
+#include "support/signal_stop.hpp"
+
+namespace agricolmap::experiments {
+namespace {
+
+struct Arguments {
+  std::string output;
+  std::vector<std::string> suites = {"paper"};
+  std::vector<std::string> cases = {};    ///< patterns; empty: all
+  std::vector<std::string> methods = {};  ///< empty: of the suites
+  std::vector<std::filesystem::path> published = {};
+  std::string settings = "final";
+  int pairs = 0;
+  int first_seed = -1;
+  bool uniform = false;
+  bool quick = false;
+  bool in_process = false;
+  bool children = false;
+  double time_limit = 0.0;  ///< 0: nobody said
+  double stop_after = 0.0;
+  int jobs = 1;
+  int threads = -1;
+  std::string shared = "../shared";
+  std::string scratch;
+};
+
+bool matchesAny(const std::string& name, const std::vector<std::string>& patterns) {
+  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
+    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+  });
+}
+
+/// Every pattern must name a case.
+void checkPatterns(const std::vector<std::string>& patterns, const std::vector<Suite>& suites) {
+  for (const std::string& pattern : patterns) {
+    const bool known = std::any_of(suites.begin(), suites.end(), [&](const Suite& suite) {
+      return std::any_of(suite.cases.begin(), suite.cases.end(),
+                         [&](const Case& one) { return matchesAny(one.name, {pattern}); });
+    });
+    if (known) continue;
+    throw UsageError(fmt::format(
+        "no case is called '{}'; `agricolmap_experiments list cases --suite {}` lists them",
+        pattern, suites.front().name));
+  }
+}
+
+/// The suites with all their cases.
+std::vector<Suite> suitesOf(const Arguments& arguments) {
+  const std::vector<Case> published = publishedCases(arguments.published);
+  std::vector<Suite> suites;
+  for (const std::string& name : arguments.suites) {
+    Suite suite = makeSuite(name, {.settings = parseSettings(arguments.settings),
+                                   .uniform = arguments.uniform,
+                                   .quick = arguments.quick});
+    if (!published.empty() && suite.curves.empty()) {
+      throw UsageError(fmt::format(
+          "--published: the suite '{}' has no guesses for it; take translation, heading, joint, "
+          "accuracy or inliers",
+          name));
+    }
+    if (arguments.uniform && !suite.curves.empty()) {
+      throw UsageError(
+          fmt::format("--uniform: the suite '{}' has the errors of its guesses itself", name));
+    }
+    // Who asks for real pairs gets others only by name.
+    if (!published.empty() && arguments.cases.empty()) suite.cases.clear();
+    suite.cases.insert(suite.cases.end(), published.begin(), published.end());
+    if (arguments.pairs > 0) suite.pairs = arguments.pairs;
+    if (arguments.first_seed >= 0) suite.first_seed = arguments.first_seed;
+    suites.push_back(std::move(suite));
+  }
+  checkPatterns(arguments.cases, suites);
+  return suites;
+}
+
+/// Leaves the cases that are asked for and can be had. Makes published pairs once: what is wrong
+/// with them is said now, not after hours of others.
+void chooseCases(const Arguments& arguments, PairMaker& maker, std::vector<Suite>& suites) {
+  std::vector<std::string> skipped;
+  std::vector<std::string> tried;
+  std::size_t left = 0;
+  for (Suite& suite : suites) {
+    std::erase_if(suite.cases, [&](const Case& one) {
+      if (!arguments.cases.empty() && !one.published && !matchesAny(one.name, arguments.cases)) {
+        return true;
+      }
+      const std::string reason = maker.unavailable(one);
+      if (!reason.empty() && !matchesAny(one.name, skipped)) {
+        fmt::print(stderr, "skipped {}: {}\n", one.name, reason);
+        skipped.push_back(one.name);
+      }
+      if (reason.empty() && one.published && !matchesAny(one.name, tried)) {
+        maker.make(one, suite.first_seed);
+        tried.push_back(one.name);
+      }
+      return !reason.empty();
+    });
+    left += suite.cases.size();
+  }
+  if (left == 0) throw InputError("no case is left to run");
+}
+
+std::vector<Method> methodsOf(const Arguments& arguments, const std::vector<Suite>& suites) {
+  std::vector<std::string> names = arguments.methods;
+  // With errors of its own a suite compares all methods, else the presets.
+  const bool compares = !suites.front().curves.empty();
+  if (names.empty())
+    names = compares ? methodNames() : std::vector<std::string>{"default", "paper"};
+  std::vector<Method> methods;
+  for (const std::string& name : names) methods.push_back(makeMethod(name));
+  return methods;
+}
+
+CampaignOptions optionsOf(const Arguments& arguments, const std::vector<Suite>& suites) {
+  CampaignOptions options;
+  options.runs.in_process =
+      arguments.in_process || (!arguments.children && suites.front().curves.empty());
+  options.runs.threads = std::max(arguments.threads, 1);
+  if (arguments.time_limit > 0.0) options.runs.time_limit = arguments.time_limit;
+  options.runs.program = std::filesystem::read_symlink("/proc/self/exe");
+  if (options.runs.in_process && (arguments.jobs > 1 || arguments.time_limit > 0.0)) {
+    throw UsageError(
+        "--jobs and --time-limit are for children; runs in this process come one after another and "
+        "to their end; give --children");
+  }
+  options.jobs = arguments.jobs;
+  options.stop_after = arguments.stop_after;
+  options.scratch =
+      std::filesystem::path(arguments.scratch.empty() ? arguments.output : arguments.scratch) /
+      fmt::format("scratch_{}", ::getpid());
+  return options;
+}
+
+void runAll(const Arguments& arguments) {
+  PairMaker maker(arguments.shared);
+  CampaignScope scope{.suites = suitesOf(arguments), .source = kRevision};
+  scope.methods = methodsOf(arguments, scope.suites);
+  const CampaignOptions options = optionsOf(arguments, scope.suites);
+  if (!options.runs.in_process) scope.time_limit = options.runs.time_limit;
+  const ThreadLimit limit(options.runs.in_process ? std::max(arguments.threads, 0) : options.jobs);
+  chooseCases(arguments, maker, scope.suites);
+  std::error_code error;
+  std::filesystem::create_directories(arguments.output, error);
+  if (error) {
+    throw OutputError(fmt::format("{}: cannot be made: {}", arguments.output, error.message()));
+  }
+  RowTable table(std::filesystem::path(arguments.output) / "rows.csv", scope.source);
+  const std::size_t before = table.rows().size();
+  const bool complete = runCampaign(scope, options, maker, table);
+  fmt::print("{}: {} rows, {} of them new{}\n", table.path().string(), table.rows().size(),
+             table.rows().size() - before,
+             complete ? "" : "; stopped early, the same command goes on from here");
+}
+
+void list(const std::string& what, const Arguments& arguments) {
+  if (what == "methods") {
+    for (const std::string& name : methodNames()) {
+      fmt::print("{:<32} {}\n", name, makeMethod(name).about);
+    }
+  } else if (what == "suites") {
+    for (const std::string& name : suiteNames()) {
+      std::vector<std::string> settings;
+      for (const Settings one : settingsOf(name)) settings.push_back(toString(one));
+      fmt::print("{:<12} {}\n", name, fmt::join(settings, ", "));
+    }
+  } else {
+    for (const Suite& suite : suitesOf(arguments)) {
+      for (const Case& one : suite.cases) fmt::print("{}\n", one.name);
+    }
+  }
+}
+
+void addSuiteFlags(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("--suite", arguments.suites,
+                  fmt::format("{} [paper]", fmt::join(suiteNames(), ", ")))
+      ->delimiter(',');
+  verb.add_option(
+      "--settings", arguments.settings,
+      "How pairs may differ: develop, calibrate or final. Improve methods on the first,\n"
+      "fit the verdict to the second, report the third [final]");
+  verb.add_option(
+          "--published", arguments.published,
+          "Folder of real pairs as in docs/published-data.md, once or more; without --case\n"
+          "nothing else is run")
+      ->allow_extra_args(false);
+  verb.add_flag("--quick", arguments.quick, "Small fields, short strips, few guesses: minutes");
+}
+
+void addRunFlags(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("-o,--output", arguments.output, "Folder for rows.csv")->required();
+  addSuiteFlags(verb, arguments);
+  verb.add_option("--case", arguments.cases, "Cases, with * for any text [all]")->delimiter(',');
+  verb.add_option("--method", arguments.methods,
+                  "Methods; a preset takes options: NAME:KEY=VALUE:... [default and paper; where\n"
+                  "methods are compared, all]")
+      ->delimiter(',');
+  verb.add_option("--pairs", arguments.pairs, "Pairs, that is seeds, per case [of the suite]")
+      ->check(CLI::Range(1, 100000));
+  verb.add_option("--first-seed", arguments.first_seed, "Seed of the first pair [of the suite]")
+      ->check(CLI::Range(0, 1000000000));
+  verb.add_flag("--uniform", arguments.uniform,
+                "Errors of the cases' own guesses from zero to their limits, not always as large");
+  auto* here = verb.add_flag("--in-process", arguments.in_process,
+                             "Methods run in this process [unless methods are compared]");
+  verb.add_flag("--children", arguments.children, "Each run is a process of its own")
+      ->excludes(here);
+  verb.add_option("--time-limit", arguments.time_limit,
+                  "A child is ended after so much computing [60 s]")
+      ->check(CLI::Range(0.5, 1e5));
+  verb.add_option("--jobs", arguments.jobs, "Children at a time [1]")->check(CLI::Range(1, 1024));
+  verb.add_option("--threads", arguments.threads,
+                  "Threads of a run, 0: all cores [in this process 0, of a child 1]")
+      ->check(CLI::Range(0, 1024));
+  verb.add_option("--stop-after", arguments.stop_after, "Begin no pair after this time [s]");
+  verb.add_option("--shared", arguments.shared, "Folder with the real data [../shared]");
+  verb.add_option("--scratch", arguments.scratch, "Folder for children's clouds [--output]");
+  verb.footer(
+      "An interrupted run goes on where it stopped when called again. Seeds 31 and 51 to 53\n"
+      "served to tune the peers.");
+}
+
+int run(int argc, char** argv) {
+  const double idle_mib = peakMemory();
+  Arguments arguments;
+  std::string what;
+  std::function<void()> action;
+  CLI::App app{"What registration methods come to on pairs with known truth."};
+  app.name("agricolmap_experiments");
+  app.require_subcommand(1);
+  CLI::App* lister = app.add_subcommand("list", "List suites, cases or methods");
+  lister->add_option("WHAT", what, "suites, cases or methods")
+      ->required()
+      ->check(CLI::IsMember({"suites", "cases", "methods"}));
+  addSuiteFlags(*lister, arguments);
+  lister->callback([&] { action = [&] { list(what, arguments); }; });
+  CLI::App* runner = app.add_subcommand("run", "Run methods on the pairs of suites");
+  addRunFlags(*runner, arguments);
+  runner->callback([&] { action = [&] { runAll(arguments); }; });
+  addRegisterOne(app, idle_mib, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+  }
+  const SignalStop signals;
+  const StopScope scope(signals.token());
+  action();
+  return 0;
+}
+
+}  // namespace
+}  // namespace agricolmap::experiments
+
+int main(int argc, char** argv) {
+  using agricolmap::ExitCode;
+  const auto fail = [](const char* what, ExitCode code) {
+    fmt::print(stderr, "agricolmap_experiments: {}\n", what);
+    return static_cast<int>(code);
+  };
+  spdlog::set_default_logger(spdlog::stderr_color_mt("agricolmap_experiments"));
+  spdlog::set_pattern("%^%l%$: %v");
+  try {
+    return agricolmap::experiments::run(argc, argv);
+  } catch (const agricolmap::Interrupted&) {
+    return fail("interrupted; the same command goes on from here", ExitCode::kInterrupted);
+  } catch (const agricolmap::Error& error) {
+    return fail(error.what(), agricolmap::exitCodeOf(error.kind()));
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", ExitCode::kInternal);
+  } catch (const std::exception& error) {
+    return fail(error.what(), ExitCode::kInternal);
+  }
+}

@@ -1,0 +1,53 @@
+// Clouds and transformations from and to files and memory.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "agricolmap/cloud.hpp"
+#include "agricolmap/export.hpp"
+
+namespace agricolmap {
+
+/// Reads PLY (ascii, binary) or PCD 0.7 (ascii, binary, compressed), told apart by content. Points
+/// in file order; those with a NaN, an infinity or a coordinate beyond 1e8 m are left out and
+/// counted. Throws InputError naming file, place and reason when the file is not what its header
+/// says.
+AGRICOLMAP_EXPORT Cloud readCloud(const std::filesystem::path& path);
+
+/// A cloud from points in memory, by the same rules. `colours` is empty or one per point; `name`
+/// stands for the cloud in messages. Throws UsageError when the numbers differ, InputError when no
+/// point is usable.
+AGRICOLMAP_EXPORT Cloud makeCloud(std::span<const Eigen::Vector3d> points,
+                                  std::span<const Rgb> colours = {},
+                                  const std::string& name = "points");
+
+/// Writes binary PLY in the coordinates of the cloud's file, as doubles. An existing file is
+/// replaced. Throws OutputError; what has been written by then stays.
+AGRICOLMAP_EXPORT void writePly(const std::filesystem::path& path, const Cloud& cloud);
+
+/// The same after moving every point: file coordinates → target file coordinates.
+AGRICOLMAP_EXPORT void writePly(const std::filesystem::path& path, const Cloud& cloud,
+                                const Transform& target_from_file);
+
+/// Reads a 4×4 matrix: 16 numbers, row-major, last row 0 0 0 1, invertible. Commas, brackets and
+/// `#` comments are fine. Throws InputError.
+AGRICOLMAP_EXPORT Transform readMatrix(const std::filesystem::path& path);
+
+/// Writes 17 significant digits: what is read back is the same to the bit. Throws OutputError.
+AGRICOLMAP_EXPORT void writeMatrix(const std::filesystem::path& path,
+                                   const Transform& target_from_source);
+
+/// World from cloud, by the geotag beside a cloud's file: `<stem>.offset.xyz`, else `offset.xyz` in
+/// its folder, else nothing. Throws InputError.
+AGRICOLMAP_EXPORT std::optional<Transform> readOffsetBeside(const std::filesystem::path& cloud);
+
+/// Component gdal. A cloud from an orthomosaic and its surface model (OpenDroneMap, Pix4D,
+/// Metashape): a point per pixel that has a height. Throws InputError when one of them is not
+/// georeferenced in metres, their coordinate systems differ or they do not overlap.
+AGRICOLMAP_EXPORT Cloud readOrthomosaic(const std::filesystem::path& ortho,
+                                        const std::filesystem::path& surface_model);
+
+}  // namespace agricolmap

@@ -1,0 +1,11 @@
+// Which version this is.
+#pragma once
+
+#include "agricolmap/export.hpp"
+
+namespace agricolmap {
+
+/// Version of the library that runs, e.g. "0.1.0".
+AGRICOLMAP_EXPORT const char* version();
+
+}  // namespace agricolmap

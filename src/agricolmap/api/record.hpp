@@ -1,0 +1,20 @@
+// What a registration leaves for its report and pictures.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/result.hpp"
+
+namespace agricolmap {
+
+struct Registration::Record {
+  pipeline::Registration found;
+  verdict::EvidenceOptions evidence;  ///< those it was judged with
+  std::string fixed_name;
+  std::string moving_name;
+  nlohmann::ordered_json report;  ///< but for the names of the pictures
+};
+
+}  // namespace agricolmap

@@ -1,0 +1,211 @@
+// The one place where what the pipeline found becomes what callers see.
+#include "agricolmap/register.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "agricolmap/api/record.hpp"
+#include "agricolmap/api/values.hpp"
+#include "agricolmap/config/json.hpp"
+#include "agricolmap/config/text.hpp"
+#include "agricolmap/core/angles.hpp"
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/monitor.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/processor.hpp"
+#include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/report/json/registration_json.hpp"
+#include "agricolmap/version.hpp"
+
+namespace agricolmap {
+namespace {
+
+/// What readers of files see to, and callers with points of their own may have missed.
+void requireWhole(const Cloud& cloud) {
+  if (cloud.hasColour() && cloud.rgb.size() != cloud.xyz.size()) {
+    throw InputError(fmt::format("{}: has {} colours for {} points; give one each, or none",
+                                 cloud.name, cloud.rgb.size(), cloud.xyz.size()));
+  }
+  const bool finite =
+      cloud.origin.allFinite() && std::all_of(cloud.xyz.begin(), cloud.xyz.end(),
+                                              [](const auto& point) { return point.allFinite(); });
+  if (!finite) {
+    throw InputError(fmt::format(
+        "{}: has coordinates that are not finite; leave such points out, as makeCloud does",
+        cloud.name));
+  }
+}
+
+Registration::Status statusOf(verdict::Status status) {
+  switch (status) {
+    case verdict::Status::kAccepted:
+      return Registration::Status::kAccepted;
+    case verdict::Status::kAmbiguous:
+      return Registration::Status::kAmbiguous;
+    case verdict::Status::kRejected:
+      break;
+  }
+  return Registration::Status::kRejected;
+}
+
+Registration::Parts partsOf(const pipeline::Transform& transform) {
+  Registration::Parts parts;
+  parts.shift_m = transform.shift;
+  parts.centre_m = transform.centre;
+  parts.heading_deg = degrees(transform.parts.yaw);
+  parts.tilt_x_deg = degrees(transform.tilt.x());
+  parts.tilt_y_deg = degrees(transform.tilt.y());
+  parts.scale_x = transform.parts.scale_x;
+  parts.scale_y = transform.parts.scale_y;
+  parts.scale_z = transform.vertical_scale;
+  parts.shear = transform.parts.shear;
+  return parts;
+}
+
+Registration::Uncertainty uncertaintyOf(const Cloud& fixed, const pipeline::Registration& found) {
+  const verdict::PoseUncertainty& inside = *found.placed->uncertainty;
+  Registration::Uncertainty uncertainty;
+  uncertainty.expected_rms_m = inside.expected_rms;
+  uncertainty.local_rms_m = inside.local_rms;
+  uncertainty.height_deviation_m = inside.height_deviation;
+  // Between the shifts in the plane and the heading stands the height, which hangs on none of them.
+  constexpr std::array<std::size_t, 5> kPlace = {0, 1, 3, 4, 5};
+  constexpr std::size_t kSize = 6;
+  for (std::size_t i = 0; i < kPlace.size(); ++i) {
+    for (std::size_t k = 0; k < kPlace.size(); ++k) {
+      uncertainty.covariance[kSize * kPlace[i] + kPlace[k]] =
+          inside.covariance(static_cast<int>(i), static_cast<int>(k));
+    }
+  }
+  uncertainty.covariance[2 * kSize + 2] = inside.height_deviation * inside.height_deviation;
+  const Eigen::Vector3d levelled(inside.centre.x(), inside.centre.y(),
+                                 found.placed->heights.offset);
+  uncertainty.centre_m = fixed.origin + found.maps.frames.levelled_from_fixed.inverse() * levelled;
+  return uncertainty;
+}
+
+Registration::Evidence evidenceOf(const pipeline::Placed& placed) {
+  Registration::Evidence evidence;
+  evidence.significance = placed.evidence.significance;
+  evidence.uniqueness = placed.evidence.uniqueness;
+  evidence.blocks = placed.evidence.blocks.size();
+  evidence.agreeing_blocks = placed.evidence.agreeing;
+  evidence.overlap = placed.overlap;
+  evidence.correlation = placed.correlation;
+  return evidence;
+}
+
+Registration publicResult(const Cloud& fixed, const pipeline::Registration& found) {
+  Registration result;
+  result.status = statusOf(found.verdict.status);
+  result.reasons = found.verdict.reasons;
+  result.probability = found.verdict.probability;
+  result.plane_probability = found.verdict.plane_probability;
+  if (found.transform) {
+    result.fixed_from_moving = found.transform->fixed_from_moving;
+    result.parts = partsOf(*found.transform);
+  }
+  if (found.placed) {
+    result.evidence = evidenceOf(*found.placed);
+    if (found.transform && found.placed->uncertainty) {
+      result.uncertainty = uncertaintyOf(fixed, found);
+    }
+  }
+  for (const pipeline::Alternative& other : found.alternatives) {
+    result.alternatives.push_back({other.fixed_from_moving, other.significance});
+  }
+  return result;
+}
+
+/// What was said about the clouds when they were read, and on the way.
+std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
+                                    const Monitor& monitor) {
+  std::vector<std::string> all = fixed.warnings;
+  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
+    all.insert(all.end(), more->begin(), more->end());
+  }
+  return all;
+}
+
+/// Refuses what was changed in vain, so that nobody believes it to have acted.
+void refuseIdle(const Options::Values& values) {
+  pipeline::RegistrationOptions options = values.options;
+  pipeline::RegistrationOptions preset = pipeline::preset(values.preset);
+  const OptionTable table = optionTable(options);
+  const OptionTable usual = optionTable(preset);
+  for (const OptionField& field : table.fields()) {
+    const std::string value = config::optionText(field);
+    if (value == config::optionText(*usual.find(field.path))) continue;
+    const std::string missing = pipeline::missingFor(options, field.path);
+    if (!missing.empty()) {
+      throw UsageError(
+          fmt::format("option {} = {} would do nothing: it needs {}", field.path, value, missing));
+    }
+  }
+}
+
+nlohmann::ordered_json reportOf(const Cloud& fixed, const Cloud& moving, const Transform& guess,
+                                const pipeline::RegistrationOptions& options,
+                                const std::string& preset, const Control& control,
+                                const pipeline::Registration& found, const Monitor& monitor) {
+  pipeline::RegistrationOptions in_force = options;
+  report::RegistrationReportInfo info;
+  info.version = version();
+  info.seed = static_cast<std::uint64_t>(options.seed);
+  info.threads = control.threads;
+  info.preset = preset;
+  info.prior = guess;
+  info.prior_source = "given by the caller";
+  info.options = config::toJson(optionTable(in_force));
+  return report::registrationJson(fixed, moving, found, monitor, info);
+}
+
+}  // namespace
+
+const char* toString(Registration::Status status) {
+  switch (status) {
+    case Registration::Status::kAccepted:
+      return "accepted";
+    case Registration::Status::kAmbiguous:
+      return "ambiguous";
+    case Registration::Status::kRejected:
+      break;
+  }
+  return "rejected";
+}
+
+Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Transform& guess,
+                            const Options& options, const Control& control) {
+  requireProcessor();
+  requireWhole(fixed);
+  requireWhole(moving);
+  if (control.threads < 0) throw UsageError("a number of threads below 0; 0 means all cores");
+  const Options::Values& values = options.values();
+  refuseIdle(values);
+  const pipeline::RegistrationOptions in_force = pipeline::resolved(values.options);
+  const ThreadLimit limit(control.threads);
+  Monitor monitor(control.stop, [&](Stage stage) {
+    if (control.on_stage) control.on_stage(nameOf(stage));
+  });
+  auto record = std::make_shared<Registration::Record>();
+  record->found =
+      pipeline::registerClouds(fixed, moving, Eigen::Affine3d(guess), in_force, monitor);
+  record->evidence = in_force.evidence;
+  record->fixed_name = fixed.name;
+  record->moving_name = moving.name;
+  record->report =
+      reportOf(fixed, moving, guess, in_force, values.preset, control, record->found, monitor);
+  Registration result = publicResult(fixed, record->found);
+  for (const StageTime& time : monitor.times()) {
+    result.times.push_back({std::string(nameOf(time.stage)), time.seconds});
+  }
+  result.warnings = warningsOf(fixed, moving, monitor);
+  result.record = std::move(record);
+  return result;
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,7 @@
+#include "agricolmap/version.hpp"
+
+namespace agricolmap {
+
+const char* version() { return AGRICOLMAP_VERSION; }
+
+}  // namespace agricolmap
