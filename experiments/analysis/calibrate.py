@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from scipy.special import expit, logit
 
 from .probability import (FEATURE_SIGNS, HEIGHT_FEATURE, RIGHT_RMS_M, features, quality,
-                          reliability, right_in_plane, right_in_space, stated)
+                          reliability, right as is_right, stated)
 
 RIDGE = 1.0
 FOLDS = 5
@@ -30,11 +30,8 @@ def samples(rows, plane):
     """
     answered = rows.rms.notna() & rows.uniqueness.notna()
     answers = rows[answered]
-    of_features = features(answers)
-    if plane:
-        of_features[HEIGHT_FEATURE] = 0.0
-    right = (right_in_plane if plane else right_in_space)(answers)
-    return of_features, right, answers.field.to_numpy(), rows[~answered]
+    of_features = features(answers).assign(**{HEIGHT_FEATURE: 0.0} if plane else {})
+    return of_features, is_right(answers, plane), answers.field.to_numpy(), rows[~answered]
 
 
 def fit(of_features, right):
@@ -84,7 +81,7 @@ def threshold(probabilities, right):
 
 
 def _set(probabilities, right, from_threshold):
-    return {**vars(quality(probabilities, right)),
+    return {**quality(probabilities, right),
             "wrong_accepted": int((probabilities[~right] >= from_threshold).sum()),
             "right_refused": int((probabilities[right] < from_threshold).sum())}
 

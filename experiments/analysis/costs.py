@@ -18,26 +18,22 @@ def computing_seconds(rows):
     return rows.run_s * share.where(rows.threads == 1, 1.0)
 
 
-def stage_seconds(rows):
-    """Sums of the stages' seconds, the largest first."""
-    sums = {}
-    for text in rows.stages:
-        for part in filter(None, text.split(";")):
-            name, seconds = part.split("=")
-            sums[name] = sums.get(name, 0.0) + float(seconds)
-    return pd.Series(sums, dtype=float).sort_values(ascending=False, kind="stable")
+def _stage_shares(rows):
+    """The stages' shares of the time, the largest first."""
+    parts = rows.stages.str.split(";").explode().str.split("=", expand=True).dropna()
+    seconds = parts[1].astype(float).groupby(parts[0]).sum() if parts.shape[1] == 2 else (
+        pd.Series(dtype=float))
+    return (seconds / seconds.sum()).sort_values(ascending=False, kind="stable")
 
 
 def _summary(rows):
     right = rows[rows.success]
-    stages = stage_seconds(right)
     return {
         "runs": len(rows), "timeouts": int((rows.status == "timeout").sum()),
         "successes": len(right),
         **{f"{name}_s": getattr(right.seconds, name)() for name in ("min", "median", "max", "mean")},
         "mean_all_s": rows.seconds.mean(), "peak_mib": rows.peak_mib.median(),
-        "stages": ";".join(f"{name}={share:.3f}" for name, share in (
-            stages / stages.sum()).items())}
+        "stages": ";".join(f"{name}={share:.3f}" for name, share in _stage_shares(right).items())}
 
 
 def _published(method):
@@ -84,7 +80,7 @@ def section(rows):
         "paper, min / mean / max s": [" / ".join(_published(method)) or "–"
                                       for method in table.method],
         "peak MiB": [number(v, 0) for v in table.peak_mib],
-        "stages": [", ".join(f"{part.split('=')[0]} {100 * float(part.split('=')[1]):.0f} %"
-                             for part in text.split(";")[:4] if part) for text in table.stages]})
+        "stages": [", ".join(f"{name} {100 * share:.0f} %" for name, share in _stage_shares(
+            rows[rows.success & (rows.method == method)])[:4].items()) for method in table.method]})
     return Section("costs", {"times": _plot(table)} if table.successes.any() else {},
                    [Table("times", table, shown)])

@@ -4,8 +4,6 @@ The features repeat agricolmap::verdict::verdictFeatures (src/agricolmap/verdict
 a test recomputes the probabilities that the program stated in committed rows.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import pandas as pd
 from scipy.special import expit
@@ -31,12 +29,10 @@ HEIGHT_FEATURE = "log_height_error"
 BINS = 10
 
 
-def right_in_space(rows):
-    return (~rows.negative & (rows.rms <= RIGHT_RMS_M)).to_numpy()
-
-
-def right_in_plane(rows):
-    return (~rows.negative & (rows.rms_horizontal <= RIGHT_RMS_M)).to_numpy()
+def right(rows, plane=False):
+    """In space, or in the plane whatever the height."""
+    rms = rows.rms_horizontal if plane else rows.rms
+    return (~rows.negative & (rms <= RIGHT_RMS_M)).to_numpy()
 
 
 def _log_within(values, low, high, unknown):
@@ -77,13 +73,11 @@ def stated(model, of_features):
 
 def _bins(parts):
     """`parts`: probabilities, whether right, and the range of the statements."""
-    table = []
-    for probabilities, right, low, high in parts:
-        interval = wilson(int(right.sum()), len(right))
-        table.append({"low": low, "high": high, "answers": len(right), "right": int(right.sum()),
-                      "mean_probability": probabilities.mean(), "right_low": interval[0],
-                      "right_high": interval[1]})
-    return pd.DataFrame(table)
+    columns = ["low", "high", "answers", "right", "mean_probability", "right_low", "right_high"]
+    return pd.DataFrame([
+        (low, high, len(hits), int(hits.sum()), stated_here.mean(),
+         *wilson(int(hits.sum()), len(hits))) for stated_here, hits, low, high in parts],
+        columns=columns)
 
 
 def reliability(probabilities, right):
@@ -101,28 +95,16 @@ def _equal_mass(probabilities, right):
                  for part in parts)
 
 
-@dataclass(frozen=True)
-class Quality:
-    """What a set of statements is worth."""
-    answers: int
-    right: int
-    area_under_curve: float
-    calibration_error_equal_mass: float
-    calibration_error_equal_width: float
-    brier: float
-
-
 def quality(probabilities, right):
-    """Needs right and wrong answers for the area under the curve, else it is NaN."""
-    probabilities = np.asarray(probabilities, float)
-    right = np.asarray(right, bool)
+    """What a set of statements is worth; without right and wrong answers no area under the curve."""
+    probabilities, right = np.asarray(probabilities, float), np.asarray(right, bool)
 
     def error(bins):
         return float((bins.right - bins.mean_probability * bins.answers).abs().sum() / len(right))
 
     both = 0 < right.sum() < len(right)
-    return Quality(len(right), int(right.sum()),
-                   float(roc_auc_score(right, probabilities)) if both else float("nan"),
-                   error(_equal_mass(probabilities, right)),
-                   error(reliability(probabilities, right)),
-                   float(brier_score_loss(right, probabilities)))
+    return {"answers": len(right), "right": int(right.sum()),
+            "area_under_curve": float(roc_auc_score(right, probabilities)) if both else np.nan,
+            "calibration_error_equal_mass": error(_equal_mass(probabilities, right)),
+            "calibration_error_equal_width": error(reliability(probabilities, right)),
+            "brier": float(brier_score_loss(right, probabilities, pos_label=True))}

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from scipy.stats import chi2
 
 from .plots import BLUE, GREY, INK, ORANGE, share_axis
-from .probability import quality, reliability, right_in_space
+from .probability import quality, reliability, right as is_right
 from .section import Section, Table
 from .shares import percent, wilson
 
@@ -75,18 +75,18 @@ def section(rows):
     stated = rows[rows.probability.notna()]
     if stated.empty:
         return None
-    right = right_in_space(stated)
+    right = is_right(stated)
     bins = reliability(stated.probability.to_numpy(), right)
     worth = quality(stated.probability, right)
-    facts = (f"{worth.answers} answers state a probability: expected calibration error "
-             f"{worth.calibration_error_equal_width:.4f} in ten bins of equal width, "
-             f"{worth.calibration_error_equal_mass:.4f} in ten of equal number; area under the "
-             f"curve {worth.area_under_curve:.4f}.")
+    facts = ("{answers} answers state a probability: expected calibration error "
+             "{calibration_error_equal_width:.4f} in ten bins of equal width, "
+             "{calibration_error_equal_mass:.4f} in ten of equal number; area under the curve "
+             "{area_under_curve:.4f}.").format(**worth)
     shown = pd.DataFrame({
         "stated": [f"{a:.1f}–{b:.1f}" for a, b in zip(bins.low, bins.high)],
         "answers": bins.answers, "mean": bins.mean_probability.map("{:.3f}".format),
         "right %": [percent(r, n) for r, n in zip(bins.right, bins.answers)]})
-    plots = {"reliability": _reliability_plot(bins, worth.answers)}
+    plots = {"reliability": _reliability_plot(bins, len(stated))}
     tables = [Table("reliability", bins, shown)]
     successes = rows[rows.success]
     covered = _coverage(successes)

@@ -101,11 +101,11 @@ class StatedTest(unittest.TestCase):
         honest = probability.quality(stated, right)
         bold = probability.quality(np.where(stated < 0.5, 0.02, 0.98), right)
         for error in ("calibration_error_equal_mass", "calibration_error_equal_width"):
-            self.assertLess(getattr(honest, error), 0.015)
-            self.assertAlmostEqual(getattr(bold, error), 0.23, delta=0.03)
+            self.assertLess(honest[error], 0.015)
+            self.assertAlmostEqual(bold[error], 0.23, delta=0.03)
         # For statements that are uniform: the area is 5/6, the Brier score 1/6.
-        self.assertAlmostEqual(honest.area_under_curve, 5 / 6, delta=0.01)
-        self.assertAlmostEqual(honest.brier, 1 / 6, delta=0.01)
+        self.assertAlmostEqual(honest["area_under_curve"], 5 / 6, delta=0.01)
+        self.assertAlmostEqual(honest["brier"], 1 / 6, delta=0.01)
 
     def test_bins_have_their_lower_end(self):
         bins = probability.reliability(np.array([0.0, 0.1, 0.1, 0.3, 1.0]),
