@@ -43,7 +43,8 @@ def section(rows):
     if rows.empty:
         return None
     rows = rows.assign(series=[_series_of(a, b) for a, b in zip(rows.case_name, rows.dataset)])
-    table = by_group(rows, ["series", "dataset", "method", "setting"], counts)
+    by = ["dataset", "series", "method", "setting"]
+    table = by_group(rows.sort_values(by), by, counts)
     order = [name for name in _SERIES if (table.series == name).any()]
     panels = [(name, dataset) for name in order for dataset in dict.fromkeys(table.dataset)]
     figure, axes = grid_of(len(panels), 4)

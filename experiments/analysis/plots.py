@@ -41,6 +41,7 @@ def to_svg(figure):
     svg = text.getvalue()
     for stand_in, variable in ((_INK, "--ink"), (_FAINT, "--faint"), (_GROUND, "--ground")):
         svg = svg.replace(stand_in, f"var({variable})")
+    svg = re.sub(r"(\.\d\d)\d+", r"\1", svg)  # more digits only make it larger
     return re.sub(r"(<svg[^>]*>\n)", lambda head: head[0] + _STYLE, svg, count=1)
 
 

@@ -78,7 +78,8 @@ def _page(made, svgs, title, text):
             "tables": [{"caption": table.title or TEXTS["tables"][table.name],
                         "csv": table.name if table.full is not None else "",
                         "long": _is_long(table.shown),
-                        "html": Markup(table.shown.to_html(index=False, border=0))}
+                        "html": Markup(table.shown.rename_axis(columns=None).to_html(
+                            index=False, border=0))}
                        for table in section.tables if table.shown is not None]})
     environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
     return environment.get_template("page.html").render(title=title, origin=text, sections=views)
