@@ -16,7 +16,7 @@ struct Model {
   double intercept;
   VerdictFeatures weights;
 };
-// As agricolmap_calibrate printed them (docs/results/locating/calibration*/calibration.json).
+// Of docs/results/calibration/{space,plane}/calibration.json; a test compares them.
 constexpr Model kAll = {-19.0314, {3.5448, 0.1172, 0.0000, 4.2849, -1.4576, -7.4809, 3.7044}};
 constexpr Model kPlane = {-10.9878, {4.9948, 0.1509, 0.1347, 3.3235, -1.6839, 0.0000, 1.0622}};
 

@@ -1,5 +1,5 @@
 // The probability that a registration is right, from its evidence: a logistic regression whose
-// weights `agricolmap_calibrate` finds on pairs with known truth (docs/campaign-suites.md).
+// weights `experiments/calibrate` finds on pairs with known truth (docs/campaign-suites.md).
 #pragma once
 
 #include <array>
