@@ -26,7 +26,7 @@ void listOptions(OptionTable& table, HiddenGroundOptions& options);
 ///
 /// Bare is what is least green by `HiddenGroundOptions::bare` of the way from the map's tenth to
 /// its nine tenths. Under a canopy that closes that is its shade, and little changes there: soybean
-/// came out as well without the fill, tall maize better (docs/results.md).
+/// came out as well without the fill, tall maize better (docs/accuracy.md).
 GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options);
 
 }  // namespace agricolmap::map
