@@ -154,7 +154,7 @@ TEST_F(OrthoTest, FlagsThatWouldDoNothingAreRefused) {
   expectFailure({"simulate", "--gsd", "0.01", "-o", out}, 2, {"--ortho"});
   expectFailure({"simulate", "--row_heading", "30", "-o", out}, 2, {"--ortho"});
   expectFailure({"simulate", "--ortho", "o.tif", "--field.row_spacing", "0.5", "-o", out}, 2,
-                {"field.row_spacing", "--ortho"});
+                {"field.row-spacing", "--ortho"});
   expectFailure({"simulate", "--ortho", "o.tif", "--dsm", "d.tif", "--field.slope", "0", "-o", out},
                 2, {"field.slope", "surface model"});
   expectFailure({"simulate", "--ortho", "o.tif", "--window", "1", "2", "3", "-o", out}, 2,

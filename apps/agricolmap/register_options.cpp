@@ -54,8 +54,9 @@ void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const Opt
   set("prior.scale", fmt::format("{:.17g}", *scale / 100.0));
 }
 
-/// Refuses flags that would do nothing. Of a file only what differs from the default: one with all
-/// options, as --dump-config writes it, is no request for each of them.
+/// Refuses flags that would do nothing. Of a file only what differs from the default, and from what
+/// --geometry-only makes of it: one with all options, as --dump-config writes it, is no request for
+/// each of them.
 void refuseIdle(const pipeline::RegistrationOptions& chosen, const std::vector<std::string>& flags,
                 const std::vector<std::string>& in_file) {
   for (const std::string& path : flags) {
@@ -66,6 +67,8 @@ void refuseIdle(const pipeline::RegistrationOptions& chosen, const std::vector<s
   }
   pipeline::RegistrationOptions options = chosen;
   pipeline::RegistrationOptions defaults;
+  defaults.geometry_only = chosen.geometry_only;
+  defaults = pipeline::resolved(defaults);
   const OptionTable table = optionTable(options);
   const OptionTable usual = optionTable(defaults);
   for (const std::string& path : in_file) {
