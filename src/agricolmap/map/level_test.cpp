@@ -119,7 +119,7 @@ TEST(Level, SaysHowRoughTheGroundIs) {
   cloud.name = "ploughed";
   for (int row = 0; row < 60; ++row) {
     for (int col = 0; col < 60; ++col) {
-      const double ground = random.normal(0.1);
+      const double ground = random.normal(0.06);
       for (int i = 0; i < 40; ++i) {
         cloud.xyz.push_back(Eigen::Vector3d(0.5 * (col + random.uniform()),
                                             0.5 * (row + random.uniform()),
@@ -129,9 +129,9 @@ TEST(Level, SaysHowRoughTheGroundIs) {
     }
   }
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
-  EXPECT_GT(level.roughness, 0.07);
-  EXPECT_LT(level.roughness, 0.14);
-  EXPECT_LT(level.support, level.under_canopy ? 0.7 : 1.1);
+  EXPECT_GT(level.roughness, 0.05);
+  EXPECT_LT(level.roughness, 0.08);
+  EXPECT_LT(level.support, level.under_canopy ? 0.8 : 1.1);
 }
 
 TEST(Level, RefusesCloudsThatAreNoMap) {

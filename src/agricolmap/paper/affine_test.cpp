@@ -89,6 +89,21 @@ TEST(EstimateAffine, WithstandsOutliersAndNoise) {
   }
 }
 
+TEST(EstimateAffine, PlainLeastSquaresIsThePapers) {
+  AffineOptions options;
+  options.robust = false;
+  const Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();
+  const Eigen::Affine2d truth = poseOf(0.2, 1.3, 0.7, axes);
+  const auto matches = stripMatches(truth, 2000, 0.03, 0.2, 2);
+  const auto plain = estimateAffine(matches, axes, options);
+  ASSERT_TRUE(plain.ok());
+  EXPECT_TRUE(plain.fixed_from_moving.isApprox(
+      fitScaledRotation(matches, {}, axes)->fixed_from_moving, 1e-12));
+  // Every outlier has its say.
+  EXPECT_GT(gap(plain.fixed_from_moving, truth),
+            5.0 * gap(estimateAffine(matches, axes, {}).fixed_from_moving, truth));
+}
+
 TEST(EstimateAffine, NamesWhatIsMissing) {
   const Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();
   const Eigen::Affine2d truth = poseOf(0.0, 1.0, 1.0, axes);

@@ -12,6 +12,8 @@
 namespace agricolmap::paper {
 
 void listOptions(OptionTable& table, AffineOptions& options) {
+  table.flag("robust", options.robust,
+             "set outliers aside; off: least squares over all matches, as in the paper");
   table.number("tukey", options.tukey, 2.0, 20.0, "deviations", "residual that gets no weight");
   table.integer("least", options.least, 4, 1000000, "", "matches needed");
   table.integer("starts", options.starts, 1, 100000, "", "random minimal fits to start from");
@@ -99,6 +101,13 @@ class Problem {
     return pose;
   }
 
+  std::optional<Eigen::Affine2d> robustFit(double& sigma) const {
+    const auto from = start();
+    return from ? refine(*from, sigma) : std::nullopt;
+  }
+
+  std::optional<Eigen::Affine2d> plainFit() const { return fit(matches_, {}); }
+
  private:
   static double sigmaOf(std::vector<double> distances) {
     return std::max(kLeastSigma, median(distances) / kMedianInPlane);
@@ -122,10 +131,12 @@ AffineEstimate estimateAffine(std::span<const Match> matches, const Eigen::Matri
   const auto least = static_cast<std::size_t>(options.least);
   if (matches.size() < least) return failure(AffineStatus::kTooFewMatches);
   const Problem problem(matches, scale_axes, options);
-  const auto start = problem.start();
-  if (!start) return failure(AffineStatus::kDegenerate);
+  if (!options.robust) {
+    const auto plain = problem.plainFit();
+    return plain ? AffineEstimate{AffineStatus::kOk, *plain} : failure(AffineStatus::kDegenerate);
+  }
   double sigma = 0.0;
-  const auto pose = problem.refine(*start, sigma);
+  const auto pose = problem.robustFit(sigma);
   if (!pose) return failure(AffineStatus::kDegenerate);
   const std::vector<double> distance = problem.residuals(*pose, 1);
   const auto agreeing = std::count_if(distance.begin(), distance.end(),

@@ -12,6 +12,8 @@
 namespace agricolmap::paper {
 
 struct AffineOptions {
+  /// Sets outliers aside; without it this is the paper's least squares over all matches.
+  bool robust = true;
   double tukey = 4.685;  ///< where the biweight reaches 0, in deviations of the residuals
   int least = 8;         ///< matches needed, before and after outliers are set aside
   int starts = 200;      ///< random minimal fits to start from
@@ -37,7 +39,8 @@ struct AffineEstimate {
 /// Starts from the random minimal fit with the smallest median residual (least median of squares,
 /// Rousseeuw 1984), then reweights with Tukey's biweight: the deviation is the median residual
 /// distance over 1.1774, as of a 2-D normal. Each fit is in closed form (fitScaledRotation).
-/// Withstands just under half outliers. Deterministic.
+/// Withstands just under half outliers. Deterministic. Without `robust` it is one fit to all
+/// matches, which then all are inliers.
 AffineEstimate estimateAffine(std::span<const Match> matches, const Eigen::Matrix2d& scale_axes,
                               const AffineOptions& options);
 

@@ -88,7 +88,13 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
                            .pose = placed.pose,
                            .rivals = {}};
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
-  return verdict::judge(finding, space, options.verdict);
+  verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
+  if (options.association != AssociationKind::kCorrelation ||
+      options.refine != RefineKind::kDense) {
+    verdict.reasons.emplace_back(
+        "the probability is calibrated for the default chain, not for this");
+  }
+  return verdict;
 }
 
 }  // namespace agricolmap::pipeline

@@ -60,9 +60,9 @@ RegistrationOptions resolved(const RegistrationOptions& chosen);
 /// as `association = flow`; empty when it has an effect.
 std::string missingFor(const RegistrationOptions& options, std::string_view path);
 
-/// Names of the presets: "default" measures best; "paper" is the paper's chain and parameters, with
-/// the moving map matched under several warps, which the range of errors that the paper reports
-/// needs; "paper-literal" is that chain with one flow from the guess as it is.
+/// Names of the presets: "default" measures best; "paper" is the paper's chain and parameters, its
+/// steps replaced where others reach the range of errors that the paper reports; "paper-literal"
+/// is that chain as it is written, as far as it is (docs/paper-chain.md has both side by side).
 std::vector<std::string> presetNames();
 /// Throws UsageError for an unknown name.
 RegistrationOptions preset(const std::string& name);

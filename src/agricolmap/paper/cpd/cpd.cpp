@@ -33,6 +33,10 @@ std::string_view toString(CpdStatus status) {
 }
 
 void listOptions(OptionTable& table, CpdOptions& options) {
+  table.choice("kind", options.kind, {"adapted", "published"},
+               "adapted to strips of plants, or as Myronenko and Song published it, with the "
+               "options of cpd.published alone");
+  table.group("published", options.published);
   table
       .number("sigma_start", options.sigma_start, 0.005, 5.0, "m",
               "kernel width of the first iteration: how wrong the start may be")
@@ -246,6 +250,69 @@ class Refiner {
   bool failed_ = false;
 };
 
+using Points = std::vector<map::VegetationPoint>;
+
+/// The fixed points within the convex outline of the moving ones, as its extents in a number of
+/// directions tell: what lies around the strip has no counterpart, and would stretch it.
+Points withinOutline(const Points& fixed, const Points& moving, const CpdPose& start) {
+  constexpr int kDirections = 32;
+  Eigen::Matrix<double, kDirections, 2> directions;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / kDirections;
+    directions.row(k) << std::cos(angle), std::sin(angle);
+  }
+  Eigen::Array<double, kDirections, 1> farthest;
+  farthest.setConstant(std::numeric_limits<double>::lowest());
+  for (const map::VegetationPoint& p : moving) {
+    farthest = farthest.max((directions * p.position).array());
+  }
+  const Eigen::Affine2d back = start.plane.inverse();
+  Points inside;
+  for (const map::VegetationPoint& p : fixed) {
+    if (((directions * (back * p.position)).array() <= farthest).all()) inside.push_back(p);
+  }
+  return inside;
+}
+
+/// At most `count` points as columns, each with the same say, where `pose` puts them.
+Eigen::Matrix3Xd asColumns(Points points, int count, const CpdPose& pose) {
+  for (map::VegetationPoint& p : points) p.weight = 1.0;
+  const Points few = map::thinToAtMost(points, static_cast<std::size_t>(count));
+  Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(few.size()));
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    columns.col(static_cast<Eigen::Index>(i)) = applyPose(pose, few[i].position, few[i].height);
+  }
+  return columns;
+}
+
+CpdResult refineAsPublished(const Points& fixed, const Points& moving, const CpdPose& start,
+                            const PublishedCpdOptions& options) {
+  CpdResult result;
+  result.pose = start;
+  const Eigen::Matrix3Xd x =
+      asColumns(withinOutline(fixed, moving, start), options.max_points, CpdPose{});
+  const Eigen::Matrix3Xd y = asColumns(moving, options.max_points, start);
+  if (std::min(x.cols(), y.cols()) < static_cast<Eigen::Index>(kMinPoints)) return result;
+  const PublishedCpdResult found = publishedCpd(x, y, options);
+  const PublishedCpdState& state = found.state;
+  result.iterations = found.iterations;
+  result.matched_share = state.matched / static_cast<double>(x.cols());
+  if (state.degenerate) {
+    result.status = CpdStatus::kDegenerate;
+    return result;
+  }
+  result.status = found.converged ? CpdStatus::kConverged : CpdStatus::kIterationLimit;
+  const Eigen::Vector3d mean = y.rowwise().mean();
+  Eigen::Affine2d plane;
+  plane.linear() = state.linear.topLeftCorner<2, 2>();
+  plane.translation() = state.shift.head<2>() + state.linear.topRightCorner<2, 1>() * mean.z();
+  result.pose.plane = plane * start.plane;
+  const double rise = state.linear(2, 2);
+  result.pose.height_offset = rise * start.height_offset + state.shift.z() +
+                              state.linear.bottomLeftCorner<1, 2>() * mean.head<2>();
+  return result;
+}
+
 }  // namespace
 
 CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
@@ -254,6 +321,9 @@ CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
   CpdResult result;
   result.pose = start;
   if (fixed.size() < kMinPoints || moving.size() < kMinPoints) return result;
+  if (options.kind == CpdKind::kPublished) {
+    return refineAsPublished(fixed, moving, start, options.published);
+  }
   const CpdClouds clouds = makeCpdClouds(fixed, moving, start, options);
   if (clouds.fixed.size() < kMinPoints || clouds.moving.size() < kMinPoints) return result;
   const CpdPose refined = Refiner(clouds, options, result).run(toCentred(start, clouds));

@@ -15,6 +15,7 @@
 //     the map shrinks or stretches by up to a per cent as the plants at its edges happen to lie.
 //     It needs the same surroundings in both maps, so points at the edge of what the moving map
 //     shows only lend their surroundings to others.
+// `kind = published` is the article's own algorithm (cpd_published.hpp) between the same points.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,10 +24,18 @@
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/map/vegetation.hpp"
+#include "agricolmap/paper/cpd/cpd_published.hpp"
 
 namespace agricolmap::paper {
 
+enum class CpdKind {
+  kAdapted,    ///< as above, with all options but `published`
+  kPublished,  ///< the article's, with `published` alone
+};
+
 struct CpdOptions {
+  CpdKind kind = CpdKind::kAdapted;
+  PublishedCpdOptions published;
   double sigma_start = 0.15;   ///< σ of the first iteration: how wrong the start may be [m]
   double sigma_end = 0.025;    ///< least σ [m]
   double decay = 0.6;          ///< most of σ that is left from one level to the next
@@ -70,8 +79,10 @@ struct CpdResult {
   }
 };
 
-/// Refines `start`, horizontally by any affine map. Failing to register is a status; the same
-/// result on any number of threads.
+/// Refines `start`, horizontally by any affine map. The article's kind takes the fixed points as
+/// data, those within the outline of the moving ones under `start`, and finds any affine map in
+/// three dimensions, however far; of its tilts the result keeps what they do to the plane at the
+/// points' mean height. Failing to register is a status; the same result on any number of threads.
 CpdResult refineByCpd(const std::vector<map::VegetationPoint>& fixed,
                       const std::vector<map::VegetationPoint>& moving, const CpdPose& start,
                       const CpdOptions& options);

@@ -193,6 +193,32 @@ TEST(Cpd, DensitiesMayDiffer) {
   }
 }
 
+TEST(Cpd, PublishedRefinesWhatTheOutlineHolds) {
+  // Every plant is seen in both maps; around the strip the fixed map has many more.
+  const Sampling drone{15.0, 0.0, 0.0, 0.01, 0.0};
+  const Sampling robot{60.0, 0.0, 0.0, 0.005, 0.0};
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    const Scene scene = makeScene(seed, drone, robot);
+    Random random(seed);
+    const CpdPose start = disturbed(scene, 0.04, radians(0.2), 0.01, random);
+    CpdOptions options;
+    options.kind = CpdKind::kPublished;
+    options.published.max_points = 1000;
+    const CpdResult result = refineByCpd(scene.fixed, scene.moving, start, options);
+    ASSERT_TRUE(result.usable()) << toString(result.status);
+    EXPECT_LT(error(scene, result.pose), 0.5 * error(scene, start)) << seed;
+    EXPECT_NEAR(result.pose.height_offset, scene.truth.height_offset, 0.03);
+  }
+  const Scene scene = makeScene(1, drone, robot);
+  CpdOptions options;
+  options.kind = CpdKind::kPublished;
+  CpdPose far = scene.truth;
+  far.plane = Eigen::Translation2d(100.0, 0.0) * far.plane;
+  const CpdResult none = refineByCpd(scene.fixed, scene.moving, far, options);
+  EXPECT_EQ(none.status, CpdStatus::kTooFewPoints);
+  EXPECT_TRUE(none.pose.plane.isApprox(far.plane));
+}
+
 TEST(Cpd, FailuresAreStatuses) {
   const Scene scene = makeScene(1, kDrone, kRobot);
   const auto status = [&](const Points& fixed, const Points& moving, const CpdPose& start) {

@@ -120,6 +120,56 @@ TEST(Daisy, MarksUnknownGroundAndBridgesHoles) {
             difference(a.daisy(middle), a.daisy(a.index(42, 42)), kDaisySize));
 }
 
+TEST(DescribeMap, EmptyCellsCanCountAsZero) {
+  const auto height = [](int row, int col) { return 0.02 * waves(row, col); };
+  const auto exg = [](int row, int col) { return 2.0 + waves(row, col); };
+  map::GridMap strip = mapOf(exg, height);
+  map::GridMap zeros = strip;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 40; col < kSide; ++col) {
+      // What an empty cell holds does not matter; a filled one that holds 0 is as good.
+      strip.weight(row, col) = 0.0F, strip.exg(row, col) = 1e6F, strip.height(row, col) = 1e6F;
+      zeros.exg(row, col) = zeros.height(row, col) = 0.0F;
+    }
+  }
+  DescribeOptions options;
+  options.empty = EmptyCells::kZero;
+  const DescriptorMap a = describedFirst(strip, options);
+  const DescriptorMap b = describedFirst(zeros);
+  const std::size_t edge = a.index(40, 39);
+  EXPECT_EQ(a.known[edge], b.known[edge]);
+  EXPECT_EQ(a.known[edge] & DescriptorMap::kDaisyBits, DescriptorMap::kDaisyBits);
+  EXPECT_EQ(difference(a.daisy(edge), b.daisy(edge), kDaisySize + kFpfhSize), 0);
+  // The border is a step that a masked map does not see.
+  EXPECT_GT(difference(a.daisy(edge), describedFirst(strip).daisy(edge), kDaisySize), 500);
+  EXPECT_FALSE(a.describes(a.index(40, 40)));
+  EXPECT_TRUE(b.describes(b.index(40, 40)));
+}
+
+TEST(DescribeMap, RefusesWhatWouldTakeTooMuchMemory) {
+  // Only the frame is looked at: the layers of such a map would not fit here.
+  map::GridMap wide;
+  wide.frame = {Eigen::Vector2d::Zero(), kCell, 6000, 6000};
+  const map::Box2 all(Eigen::Vector2d::Zero(), Eigen::Vector2d(120.0, 120.0));
+  try {
+    describeMap(wide, all, 3, {});
+    FAIL() << "14 GB were not refused";
+  } catch (const UsageError& error) {
+    const std::string what = error.what();
+    for (const char* part : {"120 x 120 m", "GiB", "4 GiB", "tighten the prior", "cells"}) {
+      EXPECT_NE(what.find(part), std::string::npos) << what;
+    }
+  }
+  const map::GridMap small = mapOf(kFlat, kFlat);
+  DescribeOptions options;
+  options.max_memory = 0.001;
+  EXPECT_THROW(describedFirst(small, options), UsageError);
+  options.max_memory = 0.01;
+  EXPECT_NO_THROW(describedFirst(small, options));
+  // 1 ha in cells of 2 cm, all in reach.
+  EXPECT_NEAR(describingBytes(25e6) / 1e9, 9.8, 0.3);
+}
+
 int peak(const std::uint8_t* histogram) {
   return static_cast<int>(std::max_element(histogram, histogram + kFpfhBins) - histogram);
 }

@@ -13,8 +13,16 @@
 
 namespace agricolmap::paper {
 
+/// What a cell without points is to the descriptors of others. None is ever described itself.
+enum class EmptyCells {
+  kMasked,  ///< nothing: means are over the cells that hold points; not in the paper
+  kZero,    ///< Excess Green and height 0, as the paper's cells begin
+};
+
 struct DescribeOptions {
   map::DataTerm term = map::DataTerm::kExgHeight;
+  EmptyCells empty = EmptyCells::kMasked;
+  double max_memory = 4.0;  ///< that describing one map may take [GiB]
   DaisyOptions daisy;
   FpfhOptions fpfh;
 };
@@ -48,9 +56,14 @@ struct DescriptorMap {
   const std::uint8_t* fpfh(std::size_t cell) const { return daisy(cell) + kFpfhOffset; }
 };
 
+/// Most memory that describing so many cells takes [bytes]: the finest level's descriptors and the
+/// layers that they are made of, which are given back before the next level.
+double describingBytes(double cells);
+
 /// Descriptors of the part of `map` in `window` (levelled frame [m]) at `levels` resolutions,
 /// finest first, each with half the resolution of the one before. Empty when the window misses the
-/// map.
+/// map. Throws UsageError, before it allocates anything, where that would take more memory than
+/// allowed.
 std::vector<DescriptorMap> describeMap(const map::GridMap& map, const map::Box2& window, int levels,
                                        const DescribeOptions& options);
 

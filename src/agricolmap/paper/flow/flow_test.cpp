@@ -75,6 +75,36 @@ TEST(Flow, FindsShiftAsThePaperDoes) {
   EXPECT_EQ(monitor.times()[2].stage, Stage::kVote);
 }
 
+/// What the literal preset sets.
+FlowAssociationOptions literalOptions() {
+  FlowAssociationOptions options = plainOptions();
+  options.describe.empty = EmptyCells::kZero;
+  options.describe.daisy.norm = DaisyNorm::kPartial;
+  options.describe.daisy.shrink = 1.0;
+  options.describe.fpfh.exaggeration = 1.0;
+  options.cost.normalise = false;
+  options.vote.kind = VoteKind::kDisplacement;
+  return options;
+}
+
+TEST(Flow, LiteralFindsShiftAndLosesATurnedStrip) {
+  const PriorUncertainty uncertainty{.translation = 3.0, .heading_deg = 5.0, .scale = 0.1};
+  const auto bestOf = [&](double yaw) {
+    const Eigen::Affine2d pose = guessError(kCentre, {2.0, -1.5}, yaw, 1.0, 1.0);
+    const Scene scene = sceneOf(pose, uncertainty);
+    Monitor monitor;
+    const auto result =
+        associateByFlow(scene.fixed, scene.moving, scene.space, literalOptions(), monitor);
+    if (result.placements.empty()) return std::pair{0.0, 0.0};
+    const std::vector<Match>& best = result.placements.front().matches;
+    return std::pair{shareRight(best, pose, 0.1), static_cast<double>(best.size())};
+  };
+  const auto [right, straight] = bestOf(0.0);
+  EXPECT_GT(right, 0.98);
+  // 5 m long and turned by 0.08 rad its displacements spread over 40 cm.
+  EXPECT_LT(bestOf(0.08).second, 0.5 * straight);
+}
+
 TEST(Flow, FindsAffineWithWarpsAndRematch) {
   const Eigen::Affine2d pose = guessError(kCentre, {-1.5, 1.0}, 0.2, 0.75, 1.25);
   const Scene scene = sceneOf(pose, {.translation = 2.5, .heading_deg = 11.5, .scale = 0.3});
@@ -168,6 +198,34 @@ TEST(MatchCost, ComparesKnownPointsOnly) {
   EXPECT_GT(MatchCost(fixed, moving, options)(0, 0), 0.0F);
   moving.known = {0x0003U};
   EXPECT_EQ(MatchCost(fixed, moving, options)(0, 0), MatchCost::kImpossible);
+}
+
+TEST(MatchCost, PlainIsThePapersSumOfAbsoluteDifferences) {
+  DescriptorMap fixed;
+  fixed.frame = {Eigen::Vector2d::Zero(), 0.02, 1, 2};
+  fixed.bytes.assign(2 * DescriptorMap::kStride, 0);
+  fixed.known.assign(2, DescriptorMap::kDaisyBits | DescriptorMap::kFpfhBit);
+  DescriptorMap moving = fixed;
+  double daisy = 0.0;
+  double fpfh = 0.0;
+  for (int k = 0; k < kDaisySize + kFpfhSize; ++k) {
+    const int a = 3 * k % 256;
+    const int b = 7 * k % 256;
+    // The second cell of the fixed map.
+    fixed.bytes[static_cast<std::size_t>(DescriptorMap::kStride + k)] =
+        static_cast<std::uint8_t>(a);
+    moving.bytes[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(b);
+    (k < kDaisySize ? daisy : fpfh) += std::abs(a - b);
+  }
+  const CostOptions options{.alpha = 1.0, .beta = 0.5, .normalise = false};
+  EXPECT_FLOAT_EQ(MatchCost(fixed, moving, options)(1, 0), static_cast<float>(daisy + 0.5 * fpfh));
+  const CostOptions other{.alpha = 2.0, .beta = 0.0, .normalise = false};
+  EXPECT_FLOAT_EQ(MatchCost(fixed, moving, other)(1, 0), static_cast<float>(2.0 * daisy));
+  // Half of the points speak for all.
+  double half = 0.0;
+  for (int k = 0; k < kDaisySize / 2; ++k) half += std::abs(3 * k % 256 - 7 * k % 256);
+  moving.known[0] = 0x00FFU;
+  EXPECT_FLOAT_EQ(MatchCost(fixed, moving, options)(1, 0), static_cast<float>(2.0 * half));
 }
 
 /// A map of random descriptors, with bytes below the limits.

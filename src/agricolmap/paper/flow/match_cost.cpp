@@ -17,6 +17,10 @@ void listOptions(OptionTable& table, CostOptions& options) {
   table.number("alpha", options.alpha, 0.0, 100.0, "", "weight of DAISY in the matching cost")
       .basic();
   table.number("beta", options.beta, 0.0, 100.0, "", "weight of FPFH in the matching cost").basic();
+  table.flag(
+      "normalise", options.normalise,
+      "each descriptor's difference over its spread between unrelated cells, not the paper's "
+      "plain sum");
 }
 
 namespace {
@@ -149,14 +153,18 @@ UnrelatedSpread unrelatedSpread(const DescriptorMap& fixed, const DescriptorMap&
 MatchCost::MatchCost(const DescriptorMap& fixed, const DescriptorMap& moving,
                      const CostOptions& options)
     : fixed_(&fixed), moving_(&moving) {
-  const UnrelatedSpread spread = unrelatedSpread(fixed, moving);
-  const double daisy = options.alpha / std::max(kLeastSpread, spread.daisy);
-  for (int n = 1; n <= kDaisyPoints; ++n) {
-    daisy_scale_[static_cast<std::size_t>(n)] =
-        static_cast<float>(daisy / (kDaisyOrientations * n));
+  // What a difference of one byte costs, were all points known.
+  double daisy = options.alpha;
+  double fpfh = options.beta;
+  if (options.normalise) {
+    const UnrelatedSpread spread = unrelatedSpread(fixed, moving);
+    daisy /= std::max(kLeastSpread, spread.daisy) * kDaisySize;
+    fpfh /= std::max(kLeastSpread, spread.fpfh) * kFpfhSize;
   }
-  fpfh_scale_ =
-      static_cast<float>(options.beta / (std::max(kLeastSpread, spread.fpfh) * kFpfhSize));
+  for (int n = 1; n <= kDaisyPoints; ++n) {
+    daisy_scale_[static_cast<std::size_t>(n)] = static_cast<float>(daisy * kDaisyPoints / n);
+  }
+  fpfh_scale_ = static_cast<float>(fpfh);
 }
 
 float MatchCost::below(std::size_t fixed_cell, std::size_t moving_cell, float limit) const {

@@ -12,6 +12,8 @@ namespace agricolmap::paper {
 struct CostOptions {
   double alpha = 1.0;  ///< weight of the visual term (Tab. III)
   double beta = 0.5;   ///< weight of the geometric term (Tab. III)
+  /// Each term over its spread between unrelated cells; not in the paper, which adds plain sums.
+  bool normalise = true;
 };
 void listOptions(OptionTable& table, CostOptions& options);
 
@@ -27,11 +29,16 @@ UnrelatedSpread unrelatedSpread(const DescriptorMap& fixed, const DescriptorMap&
 /// True when a cell of the moving map has enough known surroundings to be matched.
 bool usable(const DescriptorMap& moving, std::size_t cell);
 
-/// α·C_DAISY + β·C_FPFH between a cell of the fixed and one of the moving map. Each C is a mean
-/// absolute difference per byte over its spread between unrelated cells of these two maps: what
-/// tells cells apart is how costs differ, not how large they are, so this is the unit in which the
-/// weights compare like with like, for any crop and at any resolution. Only sample points known in
-/// the moving map count: its strip is narrower than the descriptor.
+/// α·C_DAISY + β·C_FPFH between a cell of the fixed and one of the moving map. Only sample points
+/// known in the moving map count: its strip is narrower than the descriptor.
+///
+/// With `normalise` each C is a mean absolute difference per byte over its spread between unrelated
+/// cells of these two maps: what tells cells apart is how costs differ, not how large they are, so
+/// this is the unit in which the weights compare like with like, for any crop and at any
+/// resolution. Without it each C is the paper's: the sum of absolute differences over DAISY's 128
+/// and FPFH's 33 dimensions, in bytes; DAISY's sum over the known points is taken for all 16. With
+/// daisy.norm = partial both descriptors have as many bytes to their unit (kDaisyScalePartial,
+/// kFpfhScale), so α and β weigh histograms of unit length against histograms of unit sum.
 class MatchCost {
  public:
   static constexpr float kImpossible = 1e9F;

@@ -17,13 +17,12 @@ Reach::Reach(const SearchSpace& space, const Eigen::Affine2d& warp)
   // The image is linear in the scales and nearly so in the yaw: corners and centre span it; wide
   // headings need the steps between.
   const int steps = std::max(2, static_cast<int>(std::ceil(2.0 * yaw_ / 0.2)));
-  const double widest = logScaleLimit(space_.uncertainty);
+  const double widest = std::exp(logScaleLimit(space_.uncertainty));
   for (int i = 0; i <= steps; ++i) {
     const double yaw = -yaw_ + 2.0 * yaw_ * i / steps;
-    for (const double log_x : {-widest, widest}) {
-      for (const double log_y : {-widest, widest}) {
-        const Eigen::Matrix2d m =
-            YawScales::fromVector({yaw, log_x, log_y}).linear(space_.scale_axes);
+    for (const double scale_x : {1.0 / widest, widest}) {
+      for (const double scale_y : {1.0 / widest, widest}) {
+        const Eigen::Matrix2d m = YawScales{yaw, {scale_x, scale_y}}.linear(space_.scale_axes);
         extremes_.push_back({m, m.inverse()});
       }
     }

@@ -15,14 +15,17 @@
 namespace agricolmap::paper {
 
 void listOptions(OptionTable& table, VoteOptions& options) {
+  table.choice("kind", options.kind, {"pose", "displacement"},
+               "what matches vote for: heading, scales and displacement, or the paper's "
+               "displacement alone");
   // The work grows with the fifth power of a finer step: hypotheses in three dimensions, bins in
   // two.
   table.number("step", options.step, 0.5, 100.0, "cells", "t_f in the paper: step of the vote")
       .basic();
   table.number("coarse", options.coarse, 4.0, 100.0, "t_f",
-               "step of the search over heading and scales");
+               "step of the search over heading and scales; kind pose");
   table.number("tolerance", options.tolerance, 0.5, 100.0, "t_f",
-               "largest distance of a coherent match from its placement");
+               "largest distance of a coherent match from its placement; kind pose");
   table.integer("placements", options.placements, 1, 100, "", "distinct placements at most");
   table.integer("least", options.least, 3, 1000000, "", "votes that a placement needs");
 }
@@ -278,6 +281,9 @@ VotedPlacement bestPlacement(std::span<const Match> matches, const SearchSpace& 
 std::vector<VotedPlacement> voteCoherent(std::span<const Match> matches, const SearchSpace& space,
                                          double cell, const VoteOptions& options) {
   const Eigen::Matrix2d axes = orthonormalAxes(space.scale_axes);
+  if (options.kind == VoteKind::kDisplacement) {
+    return voteDisplacement(matches, axes, cell, options);
+  }
   // The next placement is sought among the matches that those before leave unexplained.
   std::vector<Match> left(matches.begin(), matches.end());
   std::vector<std::uint32_t> index(matches.size());

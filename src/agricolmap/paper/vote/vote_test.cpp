@@ -113,6 +113,62 @@ TEST(CoherentVote, FindsNothingInNoiseAndNothingInNothing) {
   }
 }
 
+VoteOptions displacementOptions() {
+  VoteOptions options;
+  options.kind = VoteKind::kDisplacement;
+  return options;
+}
+
+TEST(DisplacementVote, CollectsThePureShiftAlone) {
+  std::vector<Match> matches;
+  Random random(3);
+  for (int i = 0; i < 600; ++i) {
+    const Eigen::Vector2d q(random.uniform(0.0, 10.0), random.uniform(0.0, 2.2));
+    // Two thirds in the middle of one bin, a sixth one row beside it, the others anywhere.
+    Eigen::Vector2d d(1.01, -0.53);
+    if (i % 6 == 1) d.y() += 0.5;
+    if (i % 6 == 2) d = {random.uniform(-6.0, 6.0), random.uniform(-6.0, 6.0)};
+    d += Eigen::Vector2d(random.uniform(-0.009, 0.009), random.uniform(-0.009, 0.009));
+    matches.push_back({q, q + d});
+  }
+  const auto placements = voteCoherent(matches, paperSpace(), kCell, displacementOptions());
+  ASSERT_EQ(placements.size(), 2U);
+  ASSERT_EQ(placements[0].inliers.size(), 400U);
+  for (const std::uint32_t i : placements[0].inliers) EXPECT_TRUE(i % 6 == 0 || i % 6 > 2);
+  EXPECT_EQ(placements[1].inliers.size(), 100U);
+  EXPECT_NEAR(placements[0].pose.yaw, 0.0, 1e-3);
+  const Eigen::Vector2d centre(5.0, 1.1);
+  const Eigen::Vector2d moved = placements[0].pose.fixed_from_moving * centre - centre;
+  EXPECT_NEAR((moved - Eigen::Vector2d(1.01, -0.53)).norm(), 0.0, 2e-3);
+}
+
+TEST(DisplacementVote, LosesATurnedStripThatPosesKeep) {
+  const Eigen::Affine2d pose = poseOf(5.0, 1.0, 1.0, Eigen::Matrix2d::Identity());
+  const Flow flow = stripFlow(pose, 0.0, 7);
+  const auto poses = voteCoherent(flow.matches, paperSpace(), kCell, {});
+  ASSERT_FALSE(poses.empty());
+  EXPECT_GT(static_cast<double>(poses.front().inliers.size()),
+            0.9 * static_cast<double>(flow.matches.size()));
+  // Over 10 m the displacement varies by 87 cm, so a bin of 2 cm holds what lies on a short band.
+  const auto bins = voteCoherent(flow.matches, paperSpace(), kCell, displacementOptions());
+  ASSERT_FALSE(bins.empty());
+  EXPECT_LT(static_cast<double>(bins.front().inliers.size()),
+            0.02 * static_cast<double>(flow.matches.size()));
+}
+
+TEST(DisplacementVote, NeighbouringBinsAreOnePlacementAndALineHasAShift) {
+  std::vector<Match> matches;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector2d q(0.1 * i, 1.0);
+    matches.push_back({q, q + Eigen::Vector2d(i < 60 ? 0.31 : 0.33, 0.01)});
+  }
+  const auto placements = voteCoherent(matches, paperSpace(), kCell, displacementOptions());
+  ASSERT_EQ(placements.size(), 1U);
+  EXPECT_EQ(placements[0].inliers.size(), 60U);
+  EXPECT_NEAR(placements[0].pose.fixed_from_moving.translation().x(), 0.31, 1e-12);
+  EXPECT_TRUE(voteCoherent({}, paperSpace(), kCell, displacementOptions()).empty());
+}
+
 TEST(CoherentVote, SameOnAnyNumberOfThreads) {
   const Flow flow = stripFlow(poseOf(8.0, 0.8, 1.2, Eigen::Matrix2d::Identity()), 0.85, 4);
   const auto parallel = voteCoherent(flow.matches, paperSpace(), kCell, {});
