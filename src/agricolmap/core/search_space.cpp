@@ -5,10 +5,11 @@
 namespace agricolmap {
 
 void listOptions(OptionTable& table, PriorUncertainty& options) {
-  table.number(
-      "translation", options.translation, 0.0, kAnywhere, "m",
-      "how far off the initial guess may be, horizontally (paper: 5).basic(); 1e6: anywhere in the "
-      "fixed map");
+  table
+      .number("translation", options.translation, 0.0, kAnywhere, "m",
+              "how far off the initial guess may be, horizontally (paper: 5); 1e6: anywhere in the "
+              "fixed map")
+      .basic();
   table
       .number("heading_deg", options.heading_deg, 0.0, 180.0, "deg",
               "how far off its heading may be (paper: 11.5)")

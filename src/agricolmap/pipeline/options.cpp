@@ -115,7 +115,7 @@ RegistrationOptions resolved(const RegistrationOptions& chosen) {
   RegistrationOptions options = chosen;
   if (options.geometry_only) {
     options.signal.term = map::DataTerm::kHeight;
-    options.flow.describe.term = map::DataTerm::kHeight;
+    if (flows(options)) options.flow.describe.term = map::DataTerm::kHeight;
   }
   // Ground that is filled in has no colours.
   if (options.signal.term == map::DataTerm::kRgb) options.hidden.fill = false;
