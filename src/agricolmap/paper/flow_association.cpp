@@ -25,7 +25,8 @@ void listOptions(OptionTable& table, FlowAssociationOptions& options) {
       .basic();
   table.number("heading_tolerance_deg", options.heading_tolerance_deg, 0.1, 180.0, "deg",
                "heading error to match with without a warp");
-  table.number("scale_tolerance", options.scale_tolerance, 0.01, 1.0, "",
+  // The number of warps grows with its inverse square.
+  table.number("scale_tolerance", options.scale_tolerance, 0.05, 1.0, "",
                "scale error to match with without a warp, as a logarithm");
   table
       .flag("rematch", options.rematch,
