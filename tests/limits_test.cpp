@@ -66,7 +66,7 @@ std::vector<std::string> extremesOf(const OptionField& field) {
 
 /// The preset under which the option at `path` has an effect.
 RegistrationOptions presetFor(const std::string& path) {
-  for (const char* name : {"default", "paper"}) {
+  for (const char* name : {"default", "paper", "paper-literal"}) {
     RegistrationOptions options = pipeline::preset(name);
     if (pipeline::missingFor(options, path).empty()) return options;
   }

@@ -60,6 +60,16 @@ bool refinesDensely(const RegistrationOptions& options) {
 bool refinesByPoints(const RegistrationOptions& options) {
   return options.refine == RefineKind::kCpd;
 }
+bool adaptsCpd(const RegistrationOptions& options) {
+  return options.cpd.kind == paper::CpdKind::kAdapted;
+}
+bool publishedCpd(const RegistrationOptions& options) {
+  return options.cpd.kind == paper::CpdKind::kPublished;
+}
+bool votesForPoses(const RegistrationOptions& options) {
+  return options.flow.vote.kind == paper::VoteKind::kPose;
+}
+bool setsOutliersAside(const RegistrationOptions& options) { return options.affine.robust; }
 
 /// What options need to have an effect.
 struct Need {
@@ -75,6 +85,23 @@ constexpr std::array kNeeds = {
     Need{"straighten", refinesDensely, "refine = dense"},
     Need{"vegetation.", refinesByPoints, "refine = cpd"},
     Need{"cpd.", refinesByPoints, "refine = cpd"},
+    Need{"flow.vote.coarse", votesForPoses, "flow.vote.kind = pose"},
+    Need{"flow.vote.tolerance", votesForPoses, "flow.vote.kind = pose"},
+    Need{"affine.tukey", setsOutliersAside, "affine.robust = true"},
+    Need{"affine.starts", setsOutliersAside, "affine.robust = true"},
+    Need{"cpd.published.", publishedCpd, "cpd.kind = published"},
+    Need{"cpd.sigma_start", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.sigma_end", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.decay", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.sigma_height", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.outlier_share", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.border", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.start_weight", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.max_points", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.max_iterations", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.tolerance", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.max_motion", adaptsCpd, "cpd.kind = adapted"},
+    Need{"cpd.min_matched", adaptsCpd, "cpd.kind = adapted"},
     Need{"signal.term",
          [](const RegistrationOptions& o) {
            return !o.geometry_only || o.signal.term == map::DataTerm::kHeight;

@@ -74,7 +74,13 @@ TEST(RegistrationOptions, NamesWhatAnOptionNeedsToHaveAnEffect) {
   EXPECT_EQ(missingFor(options, "search.cell"), "association = correlation");
   EXPECT_EQ(missingFor(options, "dense.iterations"), "refine = dense");
   EXPECT_EQ(missingFor(options, "flow.scale_tolerance"), "");
-  EXPECT_EQ(missingFor(preset("paper-literal"), "flow.scale_tolerance"), "flow.warps = true");
+  EXPECT_EQ(missingFor(options, "cpd.published.tolerance"), "cpd.kind = published");
+  options = preset("paper-literal");
+  EXPECT_EQ(missingFor(options, "flow.scale_tolerance"), "flow.warps = true");
+  EXPECT_EQ(missingFor(options, "cpd.decay"), "cpd.kind = adapted");
+  EXPECT_EQ(missingFor(options, "cpd.published.tolerance"), "");
+  EXPECT_EQ(missingFor(options, "flow.vote.tolerance"), "flow.vote.kind = pose");
+  EXPECT_EQ(missingFor(options, "affine.tukey"), "affine.robust = true");
 }
 
 }  // namespace
