@@ -10,7 +10,7 @@ namespace agricolmap::experiments {
 
 /// An outcome with what it cost.
 struct Answer {
-  MethodOutcome outcome = {};
+  MethodOutcome outcome;
   double run_s = 0.0;     ///< the registration alone [s]
   double read_s = 0.0;    ///< reading the clouds [s]
   double idle_mib = 0.0;  ///< memory before anything was read [MiB]

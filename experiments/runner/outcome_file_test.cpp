@@ -11,7 +11,10 @@ namespace agricolmap::experiments {
 namespace {
 
 TEST(OutcomeFile, KeepsWhatAMethodFound) {
-  Answer answer{.run_s = 1.5, .read_s = 0.25, .idle_mib = 20.0, .peak_mib = 300.0};
+  Answer answer;
+  answer.run_s = 1.5;
+  answer.read_s = 0.25;
+  answer.peak_mib = 300.0;
   MethodOutcome& outcome = answer.outcome;
   outcome.fixed_from_moving = Eigen::Translation3d(464000.25, 5257000.125, 500.0) *
                               Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ());

@@ -37,7 +37,9 @@ void registerOne(const Arguments& arguments, double idle_mib) {
   const Stopwatch reading;
   const Cloud fixed = io::readCloud(arguments.fixed);
   const Cloud moving = io::readCloud(arguments.moving);
-  Answer answer{.read_s = reading.seconds(), .idle_mib = idle_mib};
+  Answer answer;
+  answer.read_s = reading.seconds();
+  answer.idle_mib = idle_mib;
   MethodInput input{.fixed = fixed,
                     .moving = moving,
                     .prior = arguments.told,
