@@ -71,7 +71,7 @@ TEST(PublishedCases, EachPairIsACaseOfRealClouds) {
   const Pair pair = maker.make(cases[0], 80001);
   EXPECT_EQ(pair.fixed->size(), 4U);
   EXPECT_TRUE(pair.fixed->hasColour());
-  EXPECT_EQ(pair.moving.xyz[1].x(), 4.0F);
+  EXPECT_EQ(pair.moving.filePoint(1).x(), 4.0);
   EXPECT_TRUE(pair.guess.isApprox(rowTruth(), 1e-12)) << "exact, scales included";
   EXPECT_TRUE(pair.truth.best_affine.isApprox(rowTruth(), 1e-12));
   EXPECT_TRUE(pair.truth.points.empty());

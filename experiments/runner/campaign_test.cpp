@@ -41,6 +41,7 @@ Case smallCase(const std::string& name) {
   one.options.ugv.width = 1.2;
   one.options.geotag = {};
   one.options.geotag.translation = one.options.geotag.heading_deg = one.options.geotag.scale = 0.0;
+  one.options.geotag.z = 0.0;
   one.strips_per_field = 2;
   return one;
 }
