@@ -98,7 +98,7 @@ def inlier_section(rows):
     shown = pd.DataFrame({
         "data set": chain.dataset, "pairs": chain.pairs,
         "matches": [number(v, 0) for v in chain.matches],
-        **{f"{title} [%]": [_spread(a, b) for a, b in zip(chain[column], chain[f"{column}_deviation"])]
+        **{f"{title} [%]": list(map(_spread, chain[column], chain[f"{column}_deviation"]))
            for title, column in (("right", "matches_right"), ("coherent", "matches_coherent"),
                                  ("right, again", "rematches_right"),
                                  ("coherent, again", "rematches_coherent"))},

@@ -60,8 +60,8 @@ def section(rows):
     low, high = table.runs.min(), table.runs.max()
     pairs = f"{low}" if low == high else f"{low} to {high}"
     shown = pd.DataFrame({
-        "series": table.series, "data set": table.dataset, "setting": table.setting.map("{:g}".format),
-        "pairs": table.runs, "accepted and right %": [
+        "series": table.series, "data set": table.dataset,
+        "setting": table.setting.map("{:g}".format), "pairs": table.runs, "accepted and right %": [
             percent(k, n) for k, n in zip(table.successes, table.runs)],
         "wrong": table.wrong_accepted, "not accepted": table.not_accepted})
     return Section("breaking", {"breaking": figure}, [Table("breaking", table, shown)],

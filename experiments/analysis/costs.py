@@ -31,7 +31,7 @@ def _summary(rows):
     return {
         "runs": len(rows), "timeouts": int((rows.status == "timeout").sum()),
         "successes": len(right),
-        **{f"{name}_s": getattr(right.seconds, name)() for name in ("min", "median", "max", "mean")},
+        **right.seconds.agg(["min", "median", "max", "mean"]).add_suffix("_s"),
         "mean_all_s": rows.seconds.mean(), "peak_mib": rows.peak_mib.median(),
         "stages": ";".join(f"{name}={share:.3f}" for name, share in _stage_shares(right).items())}
 

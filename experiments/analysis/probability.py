@@ -96,7 +96,7 @@ def _equal_mass(probabilities, right):
 
 
 def quality(probabilities, right):
-    """What a set of statements is worth; without right and wrong answers no area under the curve."""
+    """What a set of statements is worth; no area under the curve without answers of both kinds."""
     probabilities, right = np.asarray(probabilities, float), np.asarray(right, bool)
 
     def error(bins):

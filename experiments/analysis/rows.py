@@ -59,7 +59,7 @@ def _first(path, frame, bad, column, what):
 def _typed(path, frame):
     for column in FLAGS:
         _first(path, frame, ~frame[column].isin(["0", "1"]), column, "neither 0 nor 1")
-    _first(path, frame, ~frame["status"].isin(STATUSES), "status", "none of: " + ", ".join(STATUSES))
+    _first(path, frame, ~frame["status"].isin(STATUSES), "status", f"none of {STATUSES}")
     numbers = {}
     for column in WHOLE + NUMBERS:
         values = pd.to_numeric(frame[column], errors="coerce")

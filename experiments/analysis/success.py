@@ -113,8 +113,8 @@ def _overview(rows):
     shown = pd.DataFrame({
         "method": full.method, "pairs": full.pairs, "runs": full.runs,
         "accepted and right": full.successes, "accepted and wrong": full.wrong_accepted,
-        "right, scale exact": [f"{number(v, 0, 100)} %" for v in full.exact_scale_success],
-        "right, scale off": [f"{number(v, 0, 100)} %" for v in full.wrong_scale_success],
+        "right, scale exact": [f"{number(v, 1, 100)} %" for v in full.exact_scale_success],
+        "right, scale off": [f"{number(v, 1, 100)} %" for v in full.wrong_scale_success],
         "plane mm": [number(v, 1, 1000) for v in full.plane_median]})
     return Table("methods", full, shown)
 

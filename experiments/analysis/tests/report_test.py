@@ -122,7 +122,8 @@ class ReportTest(unittest.TestCase):
             self.assertIn("Fields &amp; &lt;rows&gt;", page)
 
     def test_a_document_gets_its_tables(self):
-        text = "a\n<!-- analyse: here/x -->\nold\n<!-- end -->\n<!-- analyse: there/x -->\n<!-- end -->"
+        text = ("a\n<!-- analyse: here/x -->\nold\n<!-- end -->\n"
+                "<!-- analyse: there/x -->\n<!-- end -->")
         made_anew = report.update_document(text, "here", {"x": "| new |\n"})
         self.assertIn("<!-- analyse: here/x -->\n| new |\n<!-- end -->", made_anew)
         self.assertIn("<!-- analyse: there/x -->\n<!-- end -->", made_anew)

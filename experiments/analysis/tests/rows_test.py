@@ -22,7 +22,8 @@ class RowsTest(unittest.TestCase):
             self.assertIn(word, str(caught.exception))
 
     def test_reads_what_there_is_and_leaves_empty_what_is_not(self):
-        made.write(self.path, [made.line(), made.line(seed=8, accepted=0, status="rejected", rms="")])
+        made.write(self.path, [
+            made.line(), made.line(seed=8, accepted=0, status="rejected", rms="")])
         read = rows.read([self.path])
         self.assertEqual(list(read.success), [True, False])
         self.assertEqual(read.rms[0], 0.02)
