@@ -372,9 +372,9 @@ TEST(PlyReader, KeepsFileOrderOnAnyNumberOfThreads) {
                               "element vertex " + std::to_string(kPoints) + "\n" + kXyzDouble);
   for (int i = 0; i < kPoints; ++i) {
     const bool bad = i % 1000 == 17;
-    const std::string x = bad ? "nan" : std::to_string(0.125 * i);
+    const std::string x = bad ? "nan" : std::to_string(0.015625 * i);
     ascii += x + " " + std::to_string(i % 7) + ".5 0\n";
-    append(binary, bad ? std::nan("") : 0.125 * i);
+    append(binary, bad ? std::nan("") : 0.015625 * i);
     append(binary, i % 7 + 0.5);
     append(binary, 0.0);
   }
