@@ -68,6 +68,7 @@ std::vector<std::string> extremesOf(const OptionField& field) {
 RegistrationOptions presetFor(const std::string& path) {
   for (const char* name : {"default", "paper", "paper-literal"}) {
     RegistrationOptions options = pipeline::preset(name);
+    options.cpd.published.max_points = 400;  // all pairs of them are visited: minutes by default
     if (pipeline::missingFor(options, path).empty()) return options;
   }
   throw UsageError(path + " has an effect under no preset");

@@ -23,9 +23,9 @@ void listOptions(OptionTable& table, FlowAssociationOptions& options) {
             "match with the moving map turned and stretched where the guess may be far off; not in "
             "the paper")
       .basic();
-  table.number("heading_tolerance_deg", options.heading_tolerance_deg, 0.1, 180.0, "deg",
+  // There are as many warps as these make steps of what the guess leaves open: no finer ones.
+  table.number("heading_tolerance_deg", options.heading_tolerance_deg, 0.5, 180.0, "deg",
                "heading error to match with without a warp");
-  // The number of warps grows with its inverse square.
   table.number("scale_tolerance", options.scale_tolerance, 0.05, 1.0, "",
                "scale error to match with without a warp, as a logarithm");
   table
