@@ -88,9 +88,11 @@ struct Bins {
   std::size_t points = 0;
 
   std::size_t of(const Eigen::Vector2d& place) const {
-    const Eigen::Array2d at = ((place - frame.corner) / frame.cell).array().floor();
-    return static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(frame.cols) +
-           static_cast<std::size_t>(at.x());
+    // A cell is a power of two, so that this is the division to the bit; nothing lies below 0.
+    const double inverse = 1.0 / frame.cell;
+    const Eigen::Vector2d at = place - frame.corner;
+    return static_cast<std::size_t>(at.y() * inverse) * static_cast<std::size_t>(frame.cols) +
+           static_cast<std::size_t>(at.x() * inverse);
   }
 };
 

@@ -23,7 +23,7 @@ constexpr double kMaxFromOrigin = 2e4;
 constexpr double kOfTheCloud = 1e3;
 /// Points that the middle is taken from, about, and the most chunks that they are looked for in.
 constexpr std::size_t kSamples = 1024;
-constexpr std::size_t kSampledChunks = 64;
+constexpr std::size_t kSampledChunks = 8;  // spread over the file: decoding all would be dear
 constexpr std::size_t kEnoughSamples = 100;
 /// From here on 32-bit floats are coarser than 0.8 cm.
 constexpr double kFarForFloat = 1e5;
