@@ -14,8 +14,8 @@
 
 namespace agricolmap::experiments {
 
-/// Stages level and grid of the paper preset. Levelling and gridding are given to all peers alike: a method that
-/// works in the plane would else lose by a tilt that the ground says for nothing.
+/// Stages level and grid of the paper preset. Levelling and gridding are given to all peers alike:
+/// a method that works in the plane would else lose by a tilt that the ground says for nothing.
 struct PeerMaps {
   pipeline::PairFrames frames;
   SearchSpace space;
