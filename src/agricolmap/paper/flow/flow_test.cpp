@@ -203,7 +203,7 @@ TEST(MatchCost, ComparesKnownPointsOnly) {
 TEST(MatchCost, PlainIsThePapersSumOfAbsoluteDifferences) {
   DescriptorMap fixed;
   fixed.frame = {Eigen::Vector2d::Zero(), 0.02, 1, 2};
-  fixed.bytes.assign(2 * DescriptorMap::kStride, 0);
+  fixed.bytes.assign(2UL * DescriptorMap::kStride, 0);
   fixed.known.assign(2, DescriptorMap::kDaisyBits | DescriptorMap::kFpfhBit);
   DescriptorMap moving = fixed;
   double daisy = 0.0;
@@ -233,7 +233,7 @@ DescriptorMap randomMap(std::uint64_t seed, int daisy, int fpfh) {
   DescriptorMap map;
   map.frame = {Eigen::Vector2d::Zero(), 0.02, 20, 20};
   map.known.assign(400, DescriptorMap::kDaisyBits | DescriptorMap::kFpfhBit);
-  map.bytes.assign(400 * DescriptorMap::kStride, 0);
+  map.bytes.assign(400UL * DescriptorMap::kStride, 0);
   Random random(seed);
   for (std::size_t cell = 0; cell < map.known.size(); ++cell) {
     // Contrast differs from cell to cell, so that differences do.

@@ -65,7 +65,8 @@ int sumLanes(__m256i sums) {
 
 int daisyDifference(const std::uint8_t* a, const std::uint8_t* b, std::uint32_t bits, int half) {
   __m256i sum = _mm256_setzero_si256();
-  for (std::ptrdiff_t block = 2 * half; block < 2 * half + 2; ++block) {
+  const std::ptrdiff_t first = std::ptrdiff_t{2} * half;
+  for (std::ptrdiff_t block = first; block < first + 2; ++block) {
     const __m256i mask = load(kMasks.rows[(bits >> (4 * block)) & 15U].data());
     sum = _mm256_add_epi64(sum, _mm256_sad_epu8(_mm256_and_si256(mask, load(a + 32 * block)),
                                                 _mm256_and_si256(mask, load(b + 32 * block))));
@@ -82,7 +83,8 @@ int fpfhDifference(const std::uint8_t* a, const std::uint8_t* b) {
 
 int daisyDifference(const std::uint8_t* a, const std::uint8_t* b, std::uint32_t bits, int half) {
   int sum = 0;
-  for (std::ptrdiff_t block = 2 * half; block < 2 * half + 2; ++block) {
+  const std::ptrdiff_t first = std::ptrdiff_t{2} * half;
+  for (std::ptrdiff_t block = first; block < first + 2; ++block) {
     const auto& mask = kMasks.rows[(bits >> (4 * block)) & 15U];
     for (int k = 0; k < 32; ++k) {
       const int i = 32 * block + k;
