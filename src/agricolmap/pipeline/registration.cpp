@@ -50,7 +50,7 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
               const RegistrationOptions& options, const Locator& locator, Monitor& monitor) {
   const correlation::MapSignals moving(maps.moving, options.signal);
   const refine::PairSignals signals = signalsOf(fixed, moving, options, monitor);
-  std::optional<Outcome> best;
+  Outcome best;
   std::optional<locate::SearchReport> last;
   for (std::size_t attempt = 0; attempt < most; ++attempt) {
     const auto search = locate::optionsOfAttempt(options.search, attempt, last);
@@ -58,12 +58,12 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
     Located located = locate(maps, signals, *search, options, locator, monitor);
     last = located.search;
     Outcome next = settle(maps, signals, std::move(located), {}, options, monitor);
-    if (!best || supersedes(next, *best, options.verdict.rival)) best = std::move(next);
-    best->trace.attempts = attempt + 1;
+    if (attempt == 0 || supersedes(next, best, options.verdict.rival)) best = std::move(next);
+    best.trace.attempts = attempt + 1;
     // Other ways to locate have no finer search.
-    if (best->verdict.status == verdict::Status::kAccepted || !last) break;
+    if (best.verdict.status == verdict::Status::kAccepted || !last) break;
   }
-  return *std::move(best);
+  return best;
 }
 
 /// At a scale that is not known: one search at each factor that the moving file may be off by, then
