@@ -7,6 +7,10 @@
 # beside these are no matter.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(tree ${SOURCE_DIR} NAME)
+if(PARTIAL)
+  # A folder that holds the tree may be called as a room of another is.
+  set(tree)
+endif()
 set(violations 0)
 set(files 0)
 foreach(layer IN LISTS LAYERS)
