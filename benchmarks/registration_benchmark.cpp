@@ -101,8 +101,8 @@ void search(benchmark::State& state) {
   for ([[maybe_unused]] auto _ : state) {
     const correlation::MapSignals fixed(maps.fixed, scene.options.signal);
     const correlation::MapSignals moving(maps.moving, scene.options.signal);
-    benchmark::DoNotOptimize(
-        locate::searchByCorrelation(fixed, moving, maps.space, scene.options.search));
+    benchmark::DoNotOptimize(locate::searchByCorrelation(
+        fixed, moving, locate::rowWaves(fixed, moving), maps.space, scene.options.search));
   }
 }
 

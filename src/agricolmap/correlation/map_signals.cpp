@@ -14,7 +14,7 @@ const MatchedFilter& MapSignals::filter(int factor, const MatchedFilterOptions& 
                                         int rim) const {
   const map::SignalMap& signal = at(factor);
   std::unique_ptr<const MatchedFilter>& filter =
-      filters_[{factor, rim, options.floor, options.height_weight}];
+      filters_[{factor, rim, options.floor, options.height_weight, options.luminance_weight}];
   if (!filter) filter = std::make_unique<MatchedFilter>(signal, options, rim);
   return *filter;
 }

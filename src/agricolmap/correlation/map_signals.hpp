@@ -27,7 +27,7 @@ class MapSignals {
   const MatchedFilter& filter(int factor, const MatchedFilterOptions& options, int rim = 0) const;
 
  private:
-  using FilterKey = std::tuple<int, int, double, double>;  // factor, rim, floor, height's weight
+  using FilterKey = std::tuple<int, int, double, double, double>;  // factor, rim, options
 
   const map::GridMap& grid_;
   map::SignalOptions options_;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "agricolmap/correlation/whitening.hpp"
+#include <utility>
 
 namespace agricolmap::correlation {
 
@@ -11,7 +10,9 @@ void listOptions(OptionTable& table, MatchedFilterOptions& options) {
   table.number("floor", options.floor, 1e-6, 1e6, "mean power",
                "added to the power spectrum that whitens the fixed map; large: no whitening");
   table.number("height_weight", options.height_weight, 0.0, 100.0, "",
-               "weight of the height channel beside the greenness");
+               "weight of the height beside the greenness");
+  table.number("luminance_weight", options.luminance_weight, 0.0, 100.0, "",
+               "weight of the luminance beside the greenness");
 }
 
 MatchedFilter::MatchedFilter(const map::SignalMap& fixed, const MatchedFilterOptions& options,
@@ -20,46 +21,69 @@ MatchedFilter::MatchedFilter(const map::SignalMap& fixed, const MatchedFilterOpt
       options_(options),
       rim_(rim),
       fft_(Fft2::goodSize(fixed.frame.rows + 2 * rim), Fft2::goodSize(fixed.frame.cols + 2 * rim)) {
-  const ComplexRaster map = whitenedMap(fixed, fft_, options.floor);
-  greenness_ = Raster<float>(fft_.rows(), fft_.cols());
-  height_ = Raster<float>(fft_.rows(), fft_.cols());
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    greenness_[i] = map.re[i];
-    height_[i] = map.im[i];
+  for (int k = 0; k < map::kSignalChannels; ++k) {
+    if (fixed.has(k) && options.weight(k) > 0.0) channels_.push_back(k);
   }
-  // greenness + i · height: the real part of conj(template) · map is the sum of both channels.
-  whitened_ = map;
   ComplexRaster scratch(fft_.size());
-  fft_.forward(whitened_, scratch);
+  for (std::size_t i = 0; i < channels_.size(); i += 2) {
+    const ChannelPair pair{channels_[i], i + 1 < channels_.size() ? channels_[i + 1] : -1};
+    ComplexRaster map = whitenedMap(fixed, pair, fft_, options.floor);
+    const auto keep = [&](int channel, const std::vector<float>& values) {
+      Raster<float>& kept = maps_[static_cast<std::size_t>(channel)];
+      kept = Raster<float>(fft_.rows(), fft_.cols());
+      std::copy(values.begin(), values.end(), kept.begin());
+    };
+    keep(pair.first, map.re);
+    if (pair.second >= 0) keep(pair.second, map.im);
+    fft_.forward(map, scratch);
+    pairs_.push_back({pair, std::move(map)});
+  }
 }
 
-void MatchedFilter::multiply(const Template& piece, ComplexRaster& product, Work& work) const {
+void MatchedFilter::transform(const Template& piece, ChannelPair channels, ComplexRaster& spectrum,
+                              Work& work) const {
   const int rows = fft_.rows();
-  const int width = std::max(1, piece.re.cols());
+  const int width = std::max(1, piece.cols());
   const std::size_t size = static_cast<std::size_t>(rows) * width;
   for (ComplexRaster* buffer : {&work.piece, &work.piece_scratch}) {
     buffer->re.assign(size, 0.0F);
     buffer->im.assign(size, 0.0F);
   }
-  for (int r = 0; r < piece.re.rows(); ++r) {
+  const Raster<float>& first = piece.channel[channels.first];
+  for (int r = 0; r < piece.rows(); ++r) {
     const int row = ((r + piece.first_row) % rows + rows) % rows;
-    for (int c = 0; c < piece.re.cols(); ++c) {
-      const std::size_t i = static_cast<std::size_t>(row) * width + c;
-      work.piece.re[i] += piece.re(r, c);
-      work.piece.im[i] += piece.im(r, c);
+    const std::size_t begin = static_cast<std::size_t>(row) * width;
+    for (int c = 0; c < piece.cols(); ++c) {
+      const std::size_t i = begin + static_cast<std::size_t>(c);
+      work.piece.re[i] += first(r, c);
+      if (channels.second >= 0) work.piece.im[i] += piece.channel[channels.second](r, c);
     }
   }
-  fft_.forwardPiece(work.piece, work.piece_scratch, width, piece.first_col, product, work.scratch);
-  float* re = product.re.data();
-  float* im = product.im.data();
-  const float* wr = whitened_.re.data();
-  const float* wi = whitened_.im.data();
+  fft_.forwardPiece(work.piece, work.piece_scratch, width, piece.first_col, spectrum, work.scratch);
+}
+
+void MatchedFilter::multiply(const Template& piece, ComplexRaster& product, Work& work) const {
+  if (pairs_.empty()) {
+    std::fill(product.re.begin(), product.re.end(), 0.0F);
+    std::fill(product.im.begin(), product.im.end(), 0.0F);
+  }
+  for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+    ComplexRaster& spectrum = pair == 0 ? product : work.spectrum;
+    transform(piece, pairs_[pair].channels, spectrum, work);
+    float* re = product.re.data();
+    float* im = product.im.data();
+    const float* tr = spectrum.re.data();
+    const float* ti = spectrum.im.data();
+    const float* wr = pairs_[pair].spectrum.re.data();
+    const float* wi = pairs_[pair].spectrum.im.data();
+    const float before = pair == 0 ? 0.0F : 1.0F;
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < product.size(); ++i) {
-    const float a = re[i] * wr[i] + im[i] * wi[i];
-    const float b = re[i] * wi[i] - im[i] * wr[i];
-    re[i] = a;
-    im[i] = b;
+    for (std::size_t i = 0; i < product.size(); ++i) {
+      const float a = tr[i] * wr[i] + ti[i] * wi[i];
+      const float b = tr[i] * wi[i] - ti[i] * wr[i];
+      re[i] = before * re[i] + a;
+      im[i] = before * im[i] + b;
+    }
   }
 }
 

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
+#include <vector>
 
 #include "agricolmap/correlation/fft.hpp"
+#include "agricolmap/correlation/whitening.hpp"
 #include "agricolmap/map/signal_map.hpp"
 
 namespace agricolmap::correlation {
@@ -13,6 +16,13 @@ namespace agricolmap::correlation {
 struct MatchedFilterOptions {
   double floor = 0.4;          ///< added to the power spectrum, in units of its mean
   double height_weight = 1.0;  ///< of the height channel; greenness has 1
+  double luminance_weight = 1.0;
+
+  double weight(int channel) const {
+    return channel == map::kHeightChannel      ? height_weight
+           : channel == map::kLuminanceChannel ? luminance_weight
+                                               : 1.0;
+  }
 };
 void listOptions(OptionTable& table, MatchedFilterOptions& options);
 
@@ -21,9 +31,19 @@ void listOptions(OptionTable& table, MatchedFilterOptions& options);
 struct Template {
   int first_row = 0;  ///< row offset of element (0, 0)
   int first_col = 0;
-  Raster<float> re;   ///< greenness
-  Raster<float> im;   ///< height
-  double filled = 0;  ///< number of cells seen
+  Raster<float> channel[map::kSignalChannels];  ///< times its weight
+  double filled = 0;                            ///< number of cells seen
+
+  int rows() const { return channel[0].rows(); }
+  int cols() const { return channel[0].cols(); }
+  /// Sum of the squares of a cell's values.
+  double energy(int row, int col) const {
+    double sum = 0.0;
+    for (const Raster<float>& values : channel) {
+      sum += static_cast<double>(values(row, col)) * static_cast<double>(values(row, col));
+    }
+    return sum;
+  }
 };
 
 /// Samples `moving` where `inside(point)` holds: element d covers the moving point
@@ -31,7 +51,7 @@ struct Template {
 template <typename Inside>
 Template makeTemplate(const map::SignalMap& moving, const Eigen::Vector2d& anchor,
                       const Eigen::Matrix2d& linear, const Eigen::AlignedBox2d& bounds, double cell,
-                      double height_weight, const Inside& inside);
+                      const MatchedFilterOptions& options, const Inside& inside);
 
 class MatchedFilter {
  public:
@@ -42,8 +62,11 @@ class MatchedFilter {
   /// Buffers of one correlation at a time.
   struct Work {
     explicit Work(const MatchedFilter& filter)
-        : first(filter.fft().size()), second(filter.fft().size()), scratch(filter.fft().size()) {}
-    ComplexRaster first, second, scratch, piece, piece_scratch;
+        : first(filter.fft().size()),
+          second(filter.fft().size()),
+          spectrum(filter.fft().size()),
+          scratch(filter.fft().size()) {}
+    ComplexRaster first, second, spectrum, scratch, piece, piece_scratch;
   };
   /// Scores of two templates' anchors at every cell of the fixed map: `surface.re` and `surface.im`
   /// of size `fft().rows() × fft().cols()`, row-major. Two at once cost little more than one: each
@@ -59,21 +82,33 @@ class MatchedFilter {
   const GridFrame& frame() const { return frame_; }
   int rim() const { return rim_; }
   const MatchedFilterOptions& options() const { return options_; }
-  /// The whitened map itself, channel by channel; cells beyond the frame pad it for the FFT.
-  const Raster<float>& whitenedGreenness() const { return greenness_; }
-  const Raster<float>& whitenedHeight() const { return height_; }
+  /// Those of the fixed map's channels that are not empty.
+  const std::vector<int>& channels() const { return channels_; }
+  /// The whitened map itself, one of `channels()`; cells beyond the frame pad it for the FFT.
+  const Raster<float>& whitened(int channel) const {
+    return maps_[static_cast<std::size_t>(channel)];
+  }
 
  private:
-  /// conj(template) · whitened map, both spectra.
+  /// A pair of channels of the whitened map: spectrum of the first + i · the second.
+  struct Whitened {
+    ChannelPair channels;
+    ComplexRaster spectrum;
+  };
+  /// Spectrum of a pair of a template's channels: the first + i · the second.
+  void transform(const Template& piece, ChannelPair channels, ComplexRaster& spectrum,
+                 Work& work) const;
+  /// conj(template) · whitened map, spectra, summed over the channels. The real part of its inverse
+  /// transform holds the scores.
   void multiply(const Template& piece, ComplexRaster& product, Work& work) const;
 
   GridFrame frame_;
   MatchedFilterOptions options_;
   int rim_;
   Fft2 fft_;
-  ComplexRaster whitened_;  ///< spectrum of the whitened map, greenness + i · height
-  Raster<float> greenness_;
-  Raster<float> height_;
+  std::vector<int> channels_;
+  std::vector<Whitened> pairs_;
+  std::array<Raster<float>, map::kSignalChannels> maps_;
 };
 
 // Implementation of the template.
@@ -81,7 +116,7 @@ class MatchedFilter {
 template <typename Inside>
 Template makeTemplate(const map::SignalMap& moving, const Eigen::Vector2d& anchor,
                       const Eigen::Matrix2d& linear, const Eigen::AlignedBox2d& bounds, double cell,
-                      double height_weight, const Inside& inside) {
+                      const MatchedFilterOptions& options, const Inside& inside) {
   Eigen::AlignedBox2d moved;
   for (int corner = 0; corner < 4; ++corner) {
     moved.extend(Eigen::Vector2d(
@@ -93,10 +128,12 @@ Template makeTemplate(const map::SignalMap& moving, const Eigen::Vector2d& ancho
   piece.first_col = static_cast<int>(std::floor(moved.min().x()));
   const int rows = static_cast<int>(std::ceil(moved.max().y())) - piece.first_row + 1;
   const int cols = static_cast<int>(std::ceil(moved.max().x())) - piece.first_col + 1;
-  piece.re = Raster<float>(rows, cols);
-  piece.im = Raster<float>(rows, cols);
+  float weight[map::kSignalChannels];
+  for (int k = 0; k < map::kSignalChannels; ++k) {
+    piece.channel[k] = Raster<float>(rows, cols);
+    weight[k] = static_cast<float>(options.weight(k));
+  }
   const Eigen::Matrix2d back = linear.inverse() * cell;
-  const auto weight_height = static_cast<float>(height_weight);
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < cols; ++c) {
       const Eigen::Vector2d point =
@@ -104,8 +141,9 @@ Template makeTemplate(const map::SignalMap& moving, const Eigen::Vector2d& ancho
       if (!inside(point)) continue;
       const map::SignalSample sample = map::sampleSignal(moving, point);
       if (sample.weight <= 0.0F) continue;
-      piece.re(r, c) = sample.value[0];
-      piece.im(r, c) = sample.value[1] * weight_height;
+      for (int k = 0; k < map::kSignalChannels; ++k) {
+        piece.channel[k](r, c) = sample.value[k] * weight[k];
+      }
       piece.filled += 1.0;
     }
   }

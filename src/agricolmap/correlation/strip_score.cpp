@@ -24,13 +24,19 @@ double surfaceDeviation(const ComplexRaster& surface) {
 
 StripScore::StripScore(const map::SignalMap& fixed, const map::SignalMap& moving,
                        const MatchedFilter& filter)
-    : fixed_(fixed), moving_(moving), filter_(filter), strip_(map::stripFrame(moving)) {}
+    : fixed_(fixed), moving_(moving), filter_(filter), strip_(map::stripFrame(moving)) {
+  // A template meets as many seen cells as there are, whatever empty ones surround them: a map that
+  // lies obliquely in its bounding box, or in a padded one, must not look more significant.
+  const auto seen = static_cast<double>(std::count_if(fixed.weight.begin(), fixed.weight.end(),
+                                                      [](float weight) { return weight > 0.0F; }));
+  per_seen_cell_ = std::sqrt(static_cast<double>(filter.fft().size()) / std::max(1.0, seen));
+}
 
 Template StripScore::wholeTemplate(const Eigen::Affine2d& pose) const {
   Eigen::AlignedBox2d bounds;
   for (const Eigen::Vector2d& corner : strip_.corners()) bounds.extend(corner);
   return makeTemplate(moving_, strip_.centre, pose.linear(), bounds, fixed_.frame.cell,
-                      filter_.options().height_weight, [](const Eigen::Vector2d&) { return true; });
+                      filter_.options(), [](const Eigen::Vector2d&) { return true; });
 }
 
 double StripScore::significance(const Template& piece, double deviation,
@@ -41,12 +47,12 @@ double StripScore::significance(const Template& piece, double deviation,
   const int col0 = static_cast<int>(std::lround(at.x())) + piece.first_col;
   double energy = 0.0;
   double inside = 0.0;
-  for (int r = 0; r < piece.re.rows(); ++r) {
-    for (int c = 0; c < piece.re.cols(); ++c) {
-      const float cell = piece.re(r, c) * piece.re(r, c) + piece.im(r, c) * piece.im(r, c);
-      energy += static_cast<double>(cell);
+  for (int r = 0; r < piece.rows(); ++r) {
+    for (int c = 0; c < piece.cols(); ++c) {
+      const double cell = piece.energy(r, c);
+      energy += cell;
       if (!fixed_.weight.contains(row0 + r, col0 + c)) continue;
-      if (fixed_.weight(row0 + r, col0 + c) > 0.0F) inside += static_cast<double>(cell);
+      if (fixed_.weight(row0 + r, col0 + c) > 0.0F) inside += cell;
     }
   }
   if (inside <= 0.0) return 0.0;
@@ -59,7 +65,7 @@ double StripScore::significance(const Template& piece, double deviation,
 double StripScore::significance(const Eigen::Affine2d& pose) const {
   const Template piece = wholeTemplate(pose);
   MatchedFilter::Work work(filter_);
-  return significance(piece, filter_.deviation(piece, work), pose);
+  return significance(piece, per_seen_cell_ * filter_.deviation(piece, work), pose);
 }
 
 double StripScore::highestOther(const ComplexRaster& surface, const Eigen::Vector2d& centre,
@@ -92,7 +98,7 @@ ScorePeaks StripScore::peaks(const Eigen::Affine2d& pose, const Eigen::Vector2d&
   ComplexRaster surface(filter_.fft().size());
   MatchedFilter::Work work(filter_);
   filter_.correlate(piece, surface, work);
-  const double deviation = surfaceDeviation(surface);
+  const double deviation = per_seen_cell_ * surfaceDeviation(surface);
   ScorePeaks peaks;
   peaks.significance = significance(piece, deviation, pose);
   const Eigen::Vector2d at = fixed_.frame.cellOf(pose * strip_.centre);
@@ -102,34 +108,36 @@ ScorePeaks StripScore::peaks(const Eigen::Affine2d& pose, const Eigen::Vector2d&
   return peaks;
 }
 
+void StripScore::addScores(const Raster<float>& piece, const Raster<float>& map, int row0, int col0,
+                           Raster<float>& scores) const {
+  for (int r = 0; r < piece.rows(); ++r) {
+    for (int c = 0; c < piece.cols(); ++c) {
+      const float value = piece(r, c);
+      if (value == 0.0F) continue;
+      const int first = std::max(0, -(col0 + c));
+      const int last = std::min(scores.cols(), fixed_.frame.cols - (col0 + c));
+      for (int dr = 0; dr < scores.rows(); ++dr) {
+        const int row = row0 + r + dr;
+        if (row < 0 || row >= fixed_.frame.rows) continue;
+        const float* from = map.row(row) + col0 + c;
+        float* to = scores.row(dr);
+        for (int dc = first; dc < last; ++dc) to[dc] += value * from[dc];
+      }
+    }
+  }
+}
+
 double StripScore::distance(const Eigen::Affine2d& a, const Eigen::Affine2d& b) const {
   return poseDistance(strip_.corners(), a, b);
 }
 
 Raster<float> StripScore::around(const Template& piece, const Eigen::Vector2d& at,
                                  int reach) const {
-  const Raster<float>& green = filter_.whitenedGreenness();
-  const Raster<float>& high = filter_.whitenedHeight();
   Raster<float> scores(2 * reach + 1, 2 * reach + 1);
   const int row0 = static_cast<int>(std::lround(at.y())) + piece.first_row - reach;
   const int col0 = static_cast<int>(std::lround(at.x())) + piece.first_col - reach;
-  for (int r = 0; r < piece.re.rows(); ++r) {
-    for (int c = 0; c < piece.re.cols(); ++c) {
-      const float g = piece.re(r, c);
-      const float h = piece.im(r, c);
-      if (g == 0.0F && h == 0.0F) continue;
-      for (int dr = 0; dr < scores.rows(); ++dr) {
-        const int row = row0 + r + dr;
-        if (row < 0 || row >= fixed_.frame.rows) continue;
-        const int first = std::max(0, -(col0 + c));
-        const int last = std::min(scores.cols(), fixed_.frame.cols - (col0 + c));
-        const float* from_green = green.row(row) + col0 + c;
-        const float* from_high = high.row(row) + col0 + c;
-        float* to = scores.row(dr);
-        for (int dc = first; dc < last; ++dc) to[dc] += g * from_green[dc] + h * from_high[dc];
-      }
-    }
-  }
+  for (const int k : filter_.channels())
+    addScores(piece.channel[k], filter_.whitened(k), row0, col0, scores);
   return scores;
 }
 

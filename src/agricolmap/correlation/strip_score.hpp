@@ -50,10 +50,17 @@ class StripScore {
   double highestOther(const ComplexRaster& surface, const Eigen::Vector2d& centre, double radius,
                       const Eigen::Vector2d& peak, double exclusion) const;
 
+  /// Adds what one channel gives to `scores`, whose element (0, 0) lays the piece's at (row0,
+  /// col0).
+  void addScores(const Raster<float>& piece, const Raster<float>& map, int row0, int col0,
+                 Raster<float>& scores) const;
+
   const map::SignalMap& fixed_;
   const map::SignalMap& moving_;
   const MatchedFilter& filter_;
   map::StripFrame strip_;
+  double per_seen_cell_ =
+      1.0;  ///< a deviation over the cells that were seen, in that over the FFT's
 };
 
 }  // namespace agricolmap::correlation

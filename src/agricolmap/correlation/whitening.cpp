@@ -33,20 +33,22 @@ std::vector<float> smoothed(const std::vector<float>& raw, int rows, int cols) {
   return power;
 }
 
-/// Both channels of the map as one complex raster, and where they are known.
+/// Both channels of a pair as one complex raster, and where they are known.
 struct Observed {
   ComplexRaster values;
   std::vector<float> mask;
 };
 
-Observed observedOf(const map::SignalMap& fixed, const Fft2& fft) {
+Observed observedOf(const map::SignalMap& fixed, ChannelPair channels, const Fft2& fft) {
   Observed observed{ComplexRaster(fft.size()), std::vector<float>(fft.size(), 0.0F)};
   for (int r = 0; r < fixed.frame.rows; ++r) {
     for (int c = 0; c < fixed.frame.cols; ++c) {
       const std::size_t i = static_cast<std::size_t>(r) * fft.cols() + c;
       const float weight = std::min(1.0F, fixed.weight(r, c));
-      observed.values.re[i] = fixed.channel[0](r, c) * weight;
-      observed.values.im[i] = fixed.channel[1](r, c) * weight;
+      observed.values.re[i] = fixed.channel[channels.first](r, c) * weight;
+      if (channels.second >= 0) {
+        observed.values.im[i] = fixed.channel[channels.second](r, c) * weight;
+      }
       observed.mask[i] = weight > 0.0F ? 1.0F : 0.0F;
     }
   }
@@ -55,11 +57,11 @@ Observed observedOf(const map::SignalMap& fixed, const Fft2& fft) {
 
 /// Real factors per frequency and channel; each is symmetric, as a real channel's power is.
 struct Gains {
-  std::vector<float> greenness;
-  std::vector<float> height;
+  std::vector<float> first;
+  std::vector<float> second;
 };
 
-/// Multiplies the channels' spectra, packed as greenness + i · height, by their gains or divides by
+/// Multiplies the channels' spectra, packed as first + i · second, by their gains or divides by
 /// them. `data` is the spectrum of a rows × cols raster, stored cols × rows.
 void scaleChannels(ComplexRaster& data, const Gains& gains, bool divide, int rows, int cols) {
   const auto factor = [&](float gain) { return divide ? 1.0F / gain : gain; };
@@ -67,8 +69,8 @@ void scaleChannels(ComplexRaster& data, const Gains& gains, bool divide, int row
     const std::size_t here = static_cast<std::size_t>(c) * rows;
     const std::size_t there = static_cast<std::size_t>((cols - c) % cols) * rows;
     const auto scale = [&](std::size_t k, std::size_t m) {
-      const float half = 0.5F * (factor(gains.greenness[k]) + factor(gains.height[k]));
-      const float swap = 0.5F * (factor(gains.greenness[k]) - factor(gains.height[k]));
+      const float half = 0.5F * (factor(gains.first[k]) + factor(gains.second[k]));
+      const float swap = 0.5F * (factor(gains.first[k]) - factor(gains.second[k]));
       const float kr = data.re[k], ki = data.im[k], mr = data.re[m], mi = data.im[m];
       data.re[k] = half * kr + swap * mr;
       data.im[k] = half * ki - swap * mi;
@@ -108,12 +110,12 @@ Gains gainsOf(const ComplexRaster& spectrum, const Fft2& fft, double floor) {
       const float gi = 0.5F * (spectrum.im[k] - spectrum.im[m]);
       const float hr = 0.5F * (spectrum.im[k] + spectrum.im[m]);
       const float hi = 0.5F * (spectrum.re[m] - spectrum.re[k]);
-      power.greenness[k] = gr * gr + gi * gi;
-      power.height[k] = hr * hr + hi * hi;
+      power.first[k] = gr * gr + gi * gi;
+      power.second[k] = hr * hr + hi * hi;
     }
   }
-  return {gainsOf(smoothed(power.greenness, cols, rows), floor),
-          gainsOf(smoothed(power.height, cols, rows), floor)};
+  return {gainsOf(smoothed(power.first, cols, rows), floor),
+          gainsOf(smoothed(power.second, cols, rows), floor)};
 }
 
 double dot(const ComplexRaster& a, const ComplexRaster& b) {
@@ -135,8 +137,8 @@ void add(ComplexRaster& a, double factor, const ComplexRaster& b) {
 
 class Whitening {
  public:
-  Whitening(const map::SignalMap& fixed, const Fft2& fft, double floor)
-      : fft_(fft), observed_(observedOf(fixed, fft)), scratch_(fft.size()) {
+  Whitening(const map::SignalMap& fixed, ChannelPair channels, const Fft2& fft, double floor)
+      : fft_(fft), observed_(observedOf(fixed, channels, fft)), scratch_(fft.size()) {
     ComplexRaster spectrum = observed_.values;
     fft_.forward(spectrum, scratch_, true);
     gains_ = gainsOf(spectrum, fft_, floor);
@@ -191,8 +193,9 @@ class Whitening {
 
 }  // namespace
 
-ComplexRaster whitenedMap(const map::SignalMap& fixed, const Fft2& fft, double floor) {
-  return Whitening(fixed, fft, floor).solve();
+ComplexRaster whitenedMap(const map::SignalMap& fixed, ChannelPair channels, const Fft2& fft,
+                          double floor) {
+  return Whitening(fixed, channels, fft, floor).solve();
 }
 
 }  // namespace agricolmap::correlation

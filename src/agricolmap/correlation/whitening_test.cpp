@@ -59,7 +59,7 @@ TEST(Whitening, TakesRowsOutUpToTheEdgesAndAroundHoles) {
   for (const bool holes : {false, true}) {
     const map::SignalMap map = rowsAndNoise(kSize, holes);
     const Fft2 fft(Fft2::goodSize(kSize + 10), Fft2::goodSize(kSize + 10));
-    const ComplexRaster white = whitenedMap(map, fft, 0.4);
+    const ComplexRaster white = whitenedMap(map, {0, 1}, fft, 0.4);
     const auto edge = [](int r, int) { return r < 10 || r >= kSize - 10; };
     const auto middle = [](int r, int c) {
       return std::abs(r - kSize / 2) < 30 && std::abs(c - kSize / 2) < 30;
@@ -75,7 +75,7 @@ TEST(Whitening, TakesRowsOutUpToTheEdgesAndAroundHoles) {
 TEST(Whitening, CellsThatWereNotSeenStayZero) {
   const map::SignalMap map = rowsAndNoise(60, true);
   const Fft2 fft(64, 64);
-  const ComplexRaster white = whitenedMap(map, fft, 0.4);
+  const ComplexRaster white = whitenedMap(map, {0, 1}, fft, 0.4);
   EXPECT_EQ(white.re[30 * 64 + 30], 0.0F);
   EXPECT_EQ(white.im[62 * 64 + 3], 0.0F);
   EXPECT_NE(white.re[3 * 64 + 3], 0.0F);
@@ -85,7 +85,7 @@ TEST(Whitening, AnEmptyMapStaysEmpty) {
   map::SignalMap map = rowsAndNoise(30, false);
   std::fill(map.weight.begin(), map.weight.end(), 0.0F);
   for (auto& channel : map.channel) std::fill(channel.begin(), channel.end(), 0.0F);
-  const ComplexRaster white = whitenedMap(map, Fft2(32, 32), 0.4);
+  const ComplexRaster white = whitenedMap(map, {0, 1}, Fft2(32, 32), 0.4);
   for (const float v : white.re) ASSERT_EQ(v, 0.0F);
 }
 
@@ -95,11 +95,11 @@ TEST(MatchedFilter, DeviationIsThatOfTheScores) {
   Template piece;
   piece.first_row = -4;
   piece.first_col = -6;
-  piece.re = Raster<float>(9, 13);
-  piece.im = Raster<float>(9, 13);
   Random random(3);
-  for (float& v : piece.re) v = static_cast<float>(random.normal());
-  for (float& v : piece.im) v = static_cast<float>(random.normal());
+  for (Raster<float>& channel : piece.channel) {
+    channel = Raster<float>(9, 13);
+    for (float& v : channel) v = static_cast<float>(random.normal());
+  }
   MatchedFilter::Work work(filter);
   ComplexRaster surface(filter.fft().size());
   filter.correlate(piece, surface, work);

@@ -118,8 +118,7 @@ std::vector<BlockSearch::Surface> BlockSearch::correlate(const Eigen::Matrix2d& 
   const GridFrame& frame = filter_.frame();
   const auto templateOf = [&](const map::Block& block) {
     return correlation::makeTemplate(
-        moving_, block.centre, linear, boundsOf(block, strip_), frame.cell,
-        filter_.options().height_weight,
+        moving_, block.centre, linear, boundsOf(block, strip_), frame.cell, filter_.options(),
         [&](const Eigen::Vector2d& p) { return block.contains(strip_.local(p)); });
   };
   correlation::MatchedFilter::Work work(filter_);
@@ -153,7 +152,7 @@ std::vector<BlockSearch::Surface> BlockSearch::correlate(const Eigen::Matrix2d& 
 }
 
 BlockSearch::Offsets BlockSearch::offsetsOf(const Hypothesis& hypothesis) const {
-  const Eigen::Matrix2d linear = hypothesis.linear(space_.scale_axes);
+  const Eigen::Matrix2d linear = linearOf(hypothesis, space_);
   Offsets offsets;
   for (const map::Block& block : blocks_) {
     const Eigen::Vector2d at =
@@ -265,7 +264,7 @@ Candidate BlockSearch::bestNear(const Peak& peak, const std::vector<Hypothesis>&
 
 std::vector<Candidate> BlockSearch::run(const Hypothesis& coarse,
                                         const std::vector<Hypothesis>& fine) const {
-  const std::vector<Surface> surfaces = correlate(coarse.linear(space_.scale_axes));
+  const std::vector<Surface> surfaces = correlate(linearOf(coarse, space_));
   const Offsets offsets = offsetsOf(coarse);
   std::vector<Offsets> fine_offsets;
   for (const Hypothesis& h : fine) fine_offsets.push_back(offsetsOf(h));
@@ -283,8 +282,7 @@ std::vector<Candidate> BlockSearch::run(const Hypothesis& coarse,
   // Templates have det cells for each of the moving map's.
   double variance = 0.0;
   for (const Surface& surface : surfaces) variance += surface.variance;
-  const double deviation =
-      std::sqrt(variance) / std::abs(coarse.linear(space_.scale_axes).determinant());
+  const double deviation = std::sqrt(variance) / std::abs(linearOf(coarse, space_).determinant());
   std::vector<Candidate> found;
   for (const Peak& peak : boundPeaks(bounds, offsets)) {
     Candidate best = bestNear(peak, fine, fine_offsets, surfaces);

@@ -67,6 +67,9 @@ constexpr double kCoarser = 1.2;
 /// And no further than this [m]: then plants are no longer seen.
 constexpr double kCoarsestCell = 0.25;
 
+/// Headings and scales that are tried at least.
+constexpr std::size_t kLeastThinned = 12;
+
 /// What is tried: coarse hypotheses, each with the finer ones that are nearest to it.
 struct Plan {
   std::vector<Hypothesis> coarse;
@@ -100,11 +103,19 @@ std::vector<map::Block> texturedBlocks(std::vector<map::Block> blocks, int most)
   return blocks;
 }
 
-/// The strongest waves (rows, plants along them) of both maps.
-struct RowWaves {
-  std::vector<Wave> moving;
-  std::vector<Wave> fixed;
-};
+/// Every so many of the coarse hypotheses, as `CorrelationOptions::share` says.
+Plan thinned(Plan plan, double share) {
+  const auto stride = std::max<std::size_t>(
+      1, std::min(static_cast<std::size_t>(1.0 / share), plan.coarse.size() / kLeastThinned));
+  if (stride == 1) return plan;
+  Plan some;
+  for (std::size_t i = stride / 2; i < plan.coarse.size(); i += stride) {
+    some.coarse.push_back(plan.coarse[i]);
+    some.fine += plan.members[i].size();
+    some.members.push_back(std::move(plan.members[i]));
+  }
+  return some;
+}
 
 /// The maps and the plan at one cell size.
 struct Setup {
@@ -132,31 +143,29 @@ Setup setUp(const map::SignalMap& moving, double cell, int factor, const SearchS
       map::texturedStretch(map::cutBlocks(moving, strip, options.block), strip, options.max_length);
   setup.blocks = texturedBlocks(stretch.blocks, options.max_blocks);
   const map::Block& block = setup.blocks.front();
+  const Eigen::Matrix2d axes = space.mirror * strip.axes;
   const Eigen::Matrix3d block_metric =
-      displacementMetric(strip.axes, 0.5 * (block.high - block.low), space.scale_axes);
-  setup.strip_metric = displacementMetric(strip.axes, strip.half_extent, space.scale_axes);
+      displacementMetric(axes, 0.5 * (block.high - block.low), space.scale_axes);
+  setup.strip_metric = displacementMetric(axes, strip.half_extent, space.scale_axes);
   const double radius = options.tolerance * cell;
   const auto coarse = coverSpace(space.uncertainty, block_metric, radius);
-  const auto fine =
-      coverSpace(space.uncertainty,
-                 displacementMetric(strip.axes, stretch.half_extent, space.scale_axes), radius);
-  auto by_rows = alongWaves(fine, waves.moving, waves.fixed, space.scale_axes, kWaveTolerance);
+  const auto fine = coverSpace(
+      space.uncertainty, displacementMetric(axes, stretch.half_extent, space.scale_axes), radius);
+  auto by_rows = alongWaves(fine, waves.moving, waves.fixed, space, kWaveTolerance);
   setup.by_rows = !by_rows.empty();
-  setup.plan = planOver(coarse, setup.by_rows ? by_rows : fine, block_metric);
+  setup.plan =
+      thinned(planOver(coarse, setup.by_rows ? by_rows : fine, block_metric), options.share);
   return setup;
 }
 
 /// At the options' cells or, where that is too much work, at coarser ones.
 Setup affordableSetup(const correlation::MapSignals& fixed, const correlation::MapSignals& moving,
-                      const SearchSpace& space, const CorrelationOptions& options) {
-  RowWaves waves;
-  if (options.rows_on_rows) {
-    waves.fixed = strongestWaves(fixed.grid(), fixed.options(), kWaves, kMinWave);
-    waves.moving = strongestWaves(moving.grid(), moving.options(), kWaves, kMinWave);
-  }
+                      const RowWaves& waves, const SearchSpace& space,
+                      const CorrelationOptions& options) {
   const auto at = [&](double cell) {
     const int factor = std::max(1, static_cast<int>(std::lround(cell / fixed.grid().frame.cell)));
-    return setUp(moving.at(factor), fixed.at(factor).frame.cell, factor, space, waves, options);
+    return setUp(moving.at(factor), fixed.at(factor).frame.cell, factor, space,
+                 options.rows_on_rows ? waves : RowWaves{}, options);
   };
   double cell = options.cell;
   Setup setup = at(cell);
@@ -187,10 +196,17 @@ constexpr std::array<Attempt, kMostAttempts> kAttempts = {
 
 }  // namespace
 
+RowWaves rowWaves(const correlation::MapSignals& fixed, const correlation::MapSignals& moving) {
+  const auto of = [](const correlation::MapSignals& map) {
+    return strongestWaves(map.grid(), map.options(), kWaves, kMinWave);
+  };
+  return {of(fixed), of(moving)};
+}
+
 SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
-                                 const correlation::MapSignals& moving, const SearchSpace& space,
-                                 const CorrelationOptions& options) {
-  const Setup setup = affordableSetup(fixed, moving, space, options);
+                                 const correlation::MapSignals& moving, const RowWaves& waves,
+                                 const SearchSpace& space, const CorrelationOptions& options) {
+  const Setup setup = affordableSetup(fixed, moving, waves, space, options);
   const map::SignalMap& cells = moving.at(setup.factor);
   const double cell = fixed.at(setup.factor).frame.cell;
   // A block counts as soon as its middle is within half of it from the map.
@@ -223,6 +239,15 @@ SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
                    .work = work / 1e6,
                    .too_much_work = work > options.max_work * 1e6};
   return result;
+}
+
+std::vector<Eigen::Matrix2d> decoyMirrors(const correlation::MapSignals& moving,
+                                          const RowWaves& waves) {
+  const Eigen::Vector2d across = waves.moving.empty() ? map::stripFrame(moving.at(1)).axes.col(1)
+                                                      : waves.moving.front().vector;
+  const Eigen::Vector2d normal = across.normalized();
+  const Eigen::Matrix2d mirror = Eigen::Matrix2d::Identity() - 2.0 * normal * normal.transpose();
+  return {mirror, -mirror};
 }
 
 std::optional<CorrelationOptions> optionsOfAttempt(const CorrelationOptions& options,

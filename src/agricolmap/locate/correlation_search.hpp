@@ -10,6 +10,7 @@
 #include "agricolmap/core/placement.hpp"
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/correlation/map_signals.hpp"
+#include "agricolmap/locate/row_waves.hpp"
 
 namespace agricolmap::locate {
 
@@ -29,6 +30,9 @@ struct CorrelationOptions {
   int candidates = 8;        ///< placements handed on
   double separation = 0.3;   ///< placements whose corners differ by less are one [m]
   correlation::MatchedFilterOptions filter;  ///< not listed: the registration has one
+  /// Only this share of the coarse headings and scales, spread evenly, is looked at, and no fewer
+  /// than a dozen. Not listed: 1 but for decoys.
+  double share = 1.0;
 };
 void listOptions(OptionTable& table, CorrelationOptions& options);
 
@@ -48,10 +52,23 @@ struct SearchResult {
   SearchReport report;
 };
 
-/// Deterministic, whatever the number of threads.
+/// The strongest waves (rows, plants along them) of both maps.
+struct RowWaves {
+  std::vector<Wave> fixed;
+  std::vector<Wave> moving;
+};
+RowWaves rowWaves(const correlation::MapSignals& fixed, const correlation::MapSignals& moving);
+
+/// `waves`: of the maps. Deterministic, whatever the number of threads.
 SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
-                                 const correlation::MapSignals& moving, const SearchSpace& space,
-                                 const CorrelationOptions& options);
+                                 const correlation::MapSignals& moving, const RowWaves& waves,
+                                 const SearchSpace& space, const CorrelationOptions& options);
+
+/// Reflections (see SearchSpace::mirror) that make decoys of the moving map: across its rows, or
+/// across the strip where it shows none, and along them. A decoy has the pair's own rows, plants,
+/// colours and growth, and no right place: it tells how high a wrong one scores.
+std::vector<Eigen::Matrix2d> decoyMirrors(const correlation::MapSignals& moving,
+                                          const RowWaves& waves);
 
 /// The options of the `attempt`-th search, from 0: a search that was not accepted is followed by
 /// finer and freer ones. Nothing when there is none left, or when it would find nothing new after

@@ -40,7 +40,8 @@ double worstCorner(const TestField& field, const Sought& error) {
   space.centre = middle;
   const correlation::MapSignals fixed_signals(fixed, {});
   const correlation::MapSignals moving_signals(moving, {});
-  const SearchResult result = searchByCorrelation(fixed_signals, moving_signals, space, {});
+  const SearchResult result = searchByCorrelation(
+      fixed_signals, moving_signals, rowWaves(fixed_signals, moving_signals), space, {});
   if (result.placements.empty()) return 1e9;
   const Eigen::Affine2d& pose = result.placements.front().pose;
   double worst = 0.0;

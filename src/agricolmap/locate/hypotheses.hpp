@@ -15,9 +15,10 @@ namespace agricolmap::locate {
 /// A heading error and two scale factors, relative to the initial guess.
 using Hypothesis = YawScales;
 
-/// Linear map R(yaw) · A · diag(s_x, s_y) · Aᵀ with A the directions of the scales.
-inline Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& scale_axes) {
-  return hypothesis.linear(scale_axes);
+/// Linear map R(yaw) · A · diag(s_x, s_y) · Aᵀ · M with A the directions of the scales and M the
+/// space's mirror.
+inline Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const SearchSpace& space) {
+  return hypothesis.linear(space.scale_axes) * space.mirror;
 }
 
 /// Mean squared displacement of the points of a rectangle about its middle, as a quadratic form in

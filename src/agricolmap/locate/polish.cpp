@@ -18,15 +18,18 @@ constexpr int kSweeps = 6;          // per step length, at most
 Polisher::Polisher(const map::SignalMap& moving, const correlation::MatchedFilter& filter,
                    const SearchSpace& space, const Eigen::Matrix3d& strip_metric, double min_inside)
     : filter_(filter), space_(space), min_inside_(min_inside) {
-  const auto height_weight = static_cast<float>(filter.options().height_weight);
   for (int r = 0; r < moving.frame.rows; ++r) {
     for (int c = 0; c < moving.frame.cols; ++c) {
       const std::size_t i = moving.weight.index(r, c);
       if (moving.weight[i] <= 0.0F) continue;
       const float w = moving.weight[i];
-      Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(), w * moving.channel[0][i],
-                w * height_weight * moving.channel[1][i], 0.0F};
-      cell.energy = cell.greenness * cell.greenness + cell.height * cell.height;
+      Cell cell{(moving.frame.centre(r, c) - space.centre).cast<float>(), {}, 0.0F};
+      for (const int k : filter.channels()) {
+        const float value =
+            w * static_cast<float>(filter.options().weight(k)) * moving.channel[k][i];
+        cell.value[k] = value;
+        cell.energy += value * value;
+      }
       energy_ += static_cast<double>(cell.energy);
       cells_.push_back(cell);
     }
@@ -37,27 +40,28 @@ Polisher::Polisher(const map::SignalMap& moving, const correlation::MatchedFilte
 }
 
 double Polisher::score(const Candidate& candidate) const {
-  const Raster<float>& green = filter_.whitenedGreenness();
-  const Raster<float>& high = filter_.whitenedHeight();
-  const double cell = filter_.frame().cell;
+  const GridFrame& frame = filter_.frame();
   const Eigen::Matrix2f linear =
-      (candidate.hypothesis.linear(space_.scale_axes) / cell).cast<float>();
-  const Eigen::Vector2f origin =
-      filter_.frame().cellOf(space_.centre + candidate.shift).cast<float>();
-  const auto stride = static_cast<std::size_t>(green.cols());
+      (linearOf(candidate.hypothesis, space_) / frame.cell).cast<float>();
+  const Eigen::Vector2f origin = frame.cellOf(space_.centre + candidate.shift).cast<float>();
+  const int rows = filter_.fft().rows(), cols = filter_.fft().cols();
+  const auto stride = static_cast<std::size_t>(cols);
   double sum = 0.0;
   double inside = 0.0;
   for (const Cell& c : cells_) {
     const float x = origin.x() + linear(0, 0) * c.offset.x() + linear(0, 1) * c.offset.y();
     const float y = origin.y() + linear(1, 0) * c.offset.x() + linear(1, 1) * c.offset.y();
-    const auto cells = cellsWithin<float>(green.rows(), green.cols(), x, y);
+    const auto cells = cellsWithin<float>(rows, cols, x, y);
     if (!cells) continue;
-    const std::size_t i = green.index(cells->row, cells->col);
+    const std::size_t i = static_cast<std::size_t>(cells->row) * stride + cells->col;
     const auto [a, b, d, e] = cells->shares();
-    const float g =
-        a * green[i] + b * green[i + 1] + d * green[i + stride] + e * green[i + stride + 1];
-    const float h = a * high[i] + b * high[i + 1] + d * high[i + stride] + e * high[i + stride + 1];
-    sum += static_cast<double>(c.greenness * g + c.height * h);
+    float score = 0.0F;
+    for (const int k : filter_.channels()) {
+      const Raster<float>& map = filter_.whitened(k);
+      score += c.value[k] *
+               (a * map[i] + b * map[i + 1] + d * map[i + stride] + e * map[i + stride + 1]);
+    }
+    sum += static_cast<double>(score);
     inside += static_cast<double>(c.energy);
   }
   const double share = energy_ > 0.0 ? inside / energy_ : 0.0;

@@ -24,7 +24,7 @@ class Polisher {
  private:
   struct Cell {
     Eigen::Vector2f offset;  ///< from the search space's centre [m]
-    float greenness, height;
+    float value[map::kSignalChannels];
     float energy;
   };
   std::vector<Cell> cells_;

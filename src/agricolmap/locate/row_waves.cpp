@@ -72,7 +72,9 @@ Spectrum spectrumOf(const map::SignalMap& map, const Raster<float>& value) {
 std::vector<Wave> strongestWaves(const map::GridMap& map, const map::SignalOptions& options,
                                  int most, double min_strength) {
   const map::SignalMap signal = map::makeSignalMap(middleOf(map), 1, options);
-  const int channel = options.term == map::DataTerm::kHeight ? 1 : 0;
+  // Rows are green, or at least high, before they are bright.
+  int channel = 0;
+  while (channel + 1 < map::kSignalChannels && !signal.has(channel)) ++channel;
   const Spectrum spectrum = spectrumOf(signal, signal.channel[channel]);
   // The high-pass leaves something of waves that are a little longer.
   const double least = 0.9 / options.high_pass;
@@ -131,8 +133,7 @@ std::vector<Wave> strongestWaves(const map::GridMap& map, const map::SignalOptio
 
 std::vector<Hypothesis> alongWaves(const std::vector<Hypothesis>& hypotheses,
                                    const std::vector<Wave>& moving, const std::vector<Wave>& fixed,
-                                   const Eigen::Matrix2d& scale_axes,
-                                   const WaveTolerance& tolerance) {
+                                   const SearchSpace& space, const WaveTolerance& tolerance) {
   const auto fits = [&](const Eigen::Vector2d& carried, const Eigen::Vector2d& to) {
     const Eigen::Vector2d along = to.normalized();
     const double length = to.norm();
@@ -145,7 +146,7 @@ std::vector<Hypothesis> alongWaves(const std::vector<Hypothesis>& hypotheses,
   std::vector<Hypothesis> kept;
   for (const Hypothesis& hypothesis : hypotheses) {
     // cos(2π k·p) stays itself when p ↦ A·p and k ↦ A⁻ᵀ·k.
-    const Eigen::Matrix2d carry = hypothesis.linear(scale_axes).inverse().transpose();
+    const Eigen::Matrix2d carry = linearOf(hypothesis, space).inverse().transpose();
     const bool any = std::any_of(moving.begin(), moving.end(), [&](const Wave& from) {
       return std::any_of(fixed.begin(), fixed.end(),
                          [&](const Wave& to) { return fits(carry * from.vector, to.vector); });

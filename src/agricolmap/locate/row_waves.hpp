@@ -33,7 +33,6 @@ struct WaveTolerance {
 /// way round.
 std::vector<Hypothesis> alongWaves(const std::vector<Hypothesis>& hypotheses,
                                    const std::vector<Wave>& moving, const std::vector<Wave>& fixed,
-                                   const Eigen::Matrix2d& scale_axes,
-                                   const WaveTolerance& tolerance);
+                                   const SearchSpace& space, const WaveTolerance& tolerance);
 
 }  // namespace agricolmap::locate

@@ -58,14 +58,14 @@ TEST(RowWaves, TheTrueHeadingAndScalesLayRowsOnRows) {
     const auto fixed = strongestWaves(views.fixed, {}, 2, kMinStrength);
     const auto moving = strongestWaves(views.moving, {}, 2, kMinStrength);
     const WaveTolerance tolerance{.along = 0.12, .across = 0.08};
-    const Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();
-    EXPECT_EQ(alongWaves({views.truth}, moving, fixed, axes, tolerance).size(), 1U) << yaw;
+    const SearchSpace space;
+    EXPECT_EQ(alongWaves({views.truth}, moving, fixed, space, tolerance).size(), 1U) << yaw;
     // The strip turned end for end has the same rows; a quarter turn has not.
     Hypothesis turned = views.truth;
     turned.yaw += std::numbers::pi;
-    EXPECT_EQ(alongWaves({turned}, moving, fixed, axes, tolerance).size(), 1U) << yaw;
+    EXPECT_EQ(alongWaves({turned}, moving, fixed, space, tolerance).size(), 1U) << yaw;
     turned.yaw += 0.5 * std::numbers::pi;
-    EXPECT_TRUE(alongWaves({turned}, moving, fixed, axes, tolerance).empty()) << yaw;
+    EXPECT_TRUE(alongWaves({turned}, moving, fixed, space, tolerance).empty()) << yaw;
   }
 }
 

@@ -126,14 +126,17 @@ TEST_F(SearchPartsTest, DistinctCandidatesAreTheBestOfTheirPlaces) {
 
 TEST_F(SearchPartsTest, WorkBeyondItsLimitIsSaid) {
   CorrelationOptions options;
-  const SearchReport usual = searchByCorrelation(fixed_, moving_, space_, options).report;
+  const SearchReport usual =
+      searchByCorrelation(fixed_, moving_, rowWaves(fixed_, moving_), space_, options).report;
   EXPECT_FALSE(usual.too_much_work);
   options.max_work = 0.5 * usual.work;
-  const SearchReport coarser = searchByCorrelation(fixed_, moving_, space_, options).report;
+  const SearchReport coarser =
+      searchByCorrelation(fixed_, moving_, rowWaves(fixed_, moving_), space_, options).report;
   EXPECT_GT(coarser.cell, usual.cell);
   EXPECT_FALSE(coarser.too_much_work);
   options.max_work = 0.001 * usual.work;
-  const SearchReport report = searchByCorrelation(fixed_, moving_, space_, options).report;
+  const SearchReport report =
+      searchByCorrelation(fixed_, moving_, rowWaves(fixed_, moving_), space_, options).report;
   EXPECT_TRUE(report.too_much_work);
   EXPECT_GT(report.work, options.max_work);
 }

@@ -76,9 +76,10 @@ std::vector<Block> cutBlocks(const SignalMap& map, const StripFrame& strip, doub
       const int i = static_cast<int>(std::floor(from_low.x()));
       const int j = static_cast<int>(std::floor(from_low.y()));
       if (i < 0 || j < 0 || i >= along || j >= across) continue;
-      const auto e = static_cast<double>(map.channel[0](r, c));
-      const auto h = static_cast<double>(map.channel[1](r, c));
-      blocks[static_cast<std::size_t>(i * across + j)].energy += e * e + h * h;
+      for (const Raster<float>& channel : map.channel) {
+        const auto value = static_cast<double>(channel(r, c));
+        blocks[static_cast<std::size_t>(i * across + j)].energy += value * value;
+      }
     }
   }
   return blocks;

@@ -28,6 +28,10 @@ void listOptions(OptionTable& table, GridOptions& options);
 
 /// Excess Green of one colour.
 float excessGreen(Rgb colour, ExgKind kind);
+/// How bright a colour is, 0…1 (ITU-R BT.601).
+inline float luminance(Rgb colour) {
+  return (0.299F * colour.r + 0.587F * colour.g + 0.114F * colour.b) / 255.0F;
+}
 
 /// All rasters have the frame's size; where `weight` is 0 the cell is empty and the other values
 /// mean nothing. Coordinates are those of the levelled frame.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "agricolmap/core/robust.hpp"
@@ -54,6 +55,19 @@ Raster<float> bareGround(const GridMap& map, double share) {
   return bare;
 }
 
+Raster<float> luminanceOf(const GridMap& map) {
+  Raster<float> bright(map.frame.rows, map.frame.cols);
+  for (std::size_t i = 0; i < bright.size(); ++i) bright[i] = luminance(map.colour[i]);
+  return bright;
+}
+
+/// Grey: of a signal's colours only the luminance is read.
+Rgb greyOf(float bright) {
+  const auto level =
+      static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(bright, 0.0F, 1.0F)));
+  return {level, level, level};
+}
+
 }  // namespace
 
 GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options) {
@@ -67,6 +81,8 @@ GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options)
   const Raster<float> bare_share = weightedBoxMean(bare, all, radius);
   const Raster<float> soil = weightedBoxMean(map.exg, bare, radius);
   const Raster<float> ground = weightedBoxMean(map.height, bare, radius);
+  const Raster<float> bright = luminanceOf(map);
+  const Raster<float> soil_bright = weightedBoxMean(bright, bare, radius);
   const Raster<float> usual = weightedBoxMean(map.weight, seen, radius);
   const Raster<float> around = weightedBoxMean(seen, all, kReach);
   const auto whole = static_cast<float>(options.whole);
@@ -76,6 +92,7 @@ GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options)
     if (share >= 1.0F) continue;
     filled.exg[i] = share * map.exg[i] + (1.0F - share) * soil[i];
     filled.height[i] = share * map.height[i] + (1.0F - share) * ground[i];
+    filled.colour[i] = greyOf(share * bright[i] + (1.0F - share) * soil_bright[i]);
     if (!map.valid(i)) {
       filled.weight[i] = 1.0F;
       ++filled.filled;

@@ -13,7 +13,8 @@ void listOptions(OptionTable& table, SignalOptions& options) {
               "variation slower than this wavelength is taken out before maps are compared")
       .basic();
   table.number("clip", options.clip, 0.5, 100.0, "deviations", "larger values are cut to this");
-  listDataTerm(table, options.term);
+  table.choice("term", options.term, {"all", "exg_height", "rgb", "exg", "height"},
+               "what is compared: Excess Green, height and luminance, or some of them");
 }
 
 namespace {
@@ -72,13 +73,24 @@ struct Coarse {
   Raster<float> channel[kSignalChannels];
 };
 
-float greenness(const GridMap& map, std::size_t i, DataTerm term) {
-  if (term != DataTerm::kRgb) return map.exg[i];
-  const Rgb colour = map.colour[i];
-  return (0.299F * colour.r + 0.587F * colour.g + 0.114F * colour.b) / 255.0F;
+/// Whether a channel is looked at.
+bool uses(SignalTerm term, int channel) {
+  switch (term) {
+    case SignalTerm::kAll:
+      return true;
+    case SignalTerm::kExgHeight:
+      return channel != kLuminanceChannel;
+    case SignalTerm::kRgb:
+      return channel == kLuminanceChannel;
+    case SignalTerm::kExg:
+      return channel == kGreenChannel;
+    case SignalTerm::kHeight:
+      break;
+  }
+  return channel == kHeightChannel;
 }
 
-Coarse averageCells(const GridMap& map, int factor, DataTerm term) {
+Coarse averageCells(const GridMap& map, int factor) {
   Coarse coarse;
   coarse.frame = map.frame;
   coarse.frame.cell = map.frame.cell * factor;
@@ -98,8 +110,9 @@ Coarse averageCells(const GridMap& map, int factor, DataTerm term) {
         if (!map.valid(i)) continue;
         const std::size_t j = coarse.weight.index(r, fine_col / factor);
         coarse.weight[j] += 1.0F;
-        coarse.channel[0][j] += greenness(map, i, term);
-        coarse.channel[1][j] += map.height[i];
+        coarse.channel[kGreenChannel][j] += map.exg[i];
+        coarse.channel[kHeightChannel][j] += map.height[i];
+        coarse.channel[kLuminanceChannel][j] += luminance(map.colour[i]);
       }
     }
     for (int c = 0; c < cols; ++c) {
@@ -158,18 +171,15 @@ Raster<float> weightedBoxMean(const Raster<float>& value, const Raster<float>& w
 }
 
 SignalMap makeSignalMap(const GridMap& map, int factor, const SignalOptions& options) {
-  Coarse coarse = averageCells(map, factor, options.term);
+  Coarse coarse = averageCells(map, factor);
   SignalMap signal;
   signal.frame = coarse.frame;
   signal.weight = std::move(coarse.weight);
   const int radius =
       std::max(1, static_cast<int>(std::lround(0.5 * options.high_pass / signal.frame.cell)));
-  const bool used[kSignalChannels] = {
-      options.term != DataTerm::kHeight,
-      options.term == DataTerm::kExgHeight || options.term == DataTerm::kHeight};
   for (int k = 0; k < kSignalChannels; ++k) {
     signal.channel[k] = std::move(coarse.channel[k]);
-    if (used[k]) {
+    if (uses(options.term, k)) {
       signal.deviation[k] = highPass(signal.channel[k], signal.weight, radius, options.clip);
     } else {
       std::fill(signal.channel[k].begin(), signal.channel[k].end(), 0.0F);

@@ -7,28 +7,42 @@
 #include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/raster.hpp"
-#include "agricolmap/map/data_term.hpp"
 #include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::map {
 
+/// What of two maps is compared.
+enum class SignalTerm {
+  kAll,        ///< Excess Green, height and luminance
+  kExgHeight,  ///< what the paper compares
+  kRgb,        ///< luminance alone
+  kExg,        ///< Excess Green alone
+  kHeight,     ///< height alone
+};
+
 struct SignalOptions {
   double high_pass = 0.8;  ///< wavelength above which variation is taken out [m]
   double clip = 4.0;       ///< values beyond this many deviations are cut
-  DataTerm term = DataTerm::kExgHeight;
+  SignalTerm term = SignalTerm::kAll;
 };
 void listOptions(OptionTable& table, SignalOptions& options);
 
-/// Number of channels of a SignalMap: greenness (or luminance) and height.
-inline constexpr int kSignalChannels = 2;
+/// The channels of a SignalMap. Plants tell places apart by the first two, and they grow; soil,
+/// stones, straw and tillage by the third, and shadows move.
+inline constexpr int kGreenChannel = 0;
+inline constexpr int kHeightChannel = 1;
+inline constexpr int kLuminanceChannel = 2;
+inline constexpr int kSignalChannels = 3;
 
 /// Per cell a high-passed value per channel with mean 0 and deviation 1 over the valid cells, and
 /// the share of the cell that was seen. Where `weight` is 0 all values are 0.
 struct SignalMap {
   GridFrame frame;
-  Raster<float> weight;                    ///< share of filled fine cells, 0…1
-  Raster<float> channel[kSignalChannels];  ///< greenness, height
-  double deviation[kSignalChannels] = {};  ///< what was divided by: ExG units, metres
+  Raster<float> weight;  ///< share of filled fine cells, 0…1
+  Raster<float> channel[kSignalChannels];
+  /// What was divided by: ExG units, metres, share of white. 0: the channel is left out, or flat.
+  double deviation[kSignalChannels] = {};
+  bool has(int k) const { return deviation[k] > 0.0; }
 };
 
 /// Averages `factor × factor` cells of `map` and high-passes them. A channel that `options.term`

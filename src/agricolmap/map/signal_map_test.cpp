@@ -52,7 +52,7 @@ TEST(SignalMap, EmptyCellsDoNotCount) {
 
 TEST(SignalMap, LeavesOutWhatTheTermLeavesOut) {
   SignalOptions options;
-  options.term = DataTerm::kExg;
+  options.term = SignalTerm::kExg;
   const SignalMap signal = makeSignalMap(makeRows(false), 1, options);
   for (const float v : signal.channel[1]) ASSERT_EQ(v, 0.0F);
   EXPECT_EQ(signal.deviation[1], 0.0);

@@ -149,7 +149,7 @@ class BumpField {
   std::vector<Bump> bumps_;
 };
 
-/// A signal map that shows `value(point)` in both channels, in the heights half as strong.
+/// A signal map that shows `value(point)` as greenness and, half as strong, as height.
 template <typename Value>
 map::SignalMap signalOf(const GridFrame& frame, const Value& value) {
   map::SignalMap map;
@@ -162,7 +162,7 @@ map::SignalMap signalOf(const GridFrame& frame, const Value& value) {
       map.channel[1](row, col) = 0.5F * map.channel[0](row, col);
     }
   }
-  for (double& deviation : map.deviation) deviation = 1.0;
+  map.deviation[map::kGreenChannel] = map.deviation[map::kHeightChannel] = 1.0;
   return map;
 }
 

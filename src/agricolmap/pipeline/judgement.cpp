@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "agricolmap/refine/channel_poses.hpp"
 #include "agricolmap/refine/fit.hpp"
 #include "agricolmap/verdict/straighten.hpp"
 
@@ -34,9 +35,14 @@ Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
     const double rival = refined.rivals.empty() ? 0.0 : refined.rivals.front().significance;
     placed.evidence =
         verdict::measureEvidence(signals.score(), pose, space, rival, options.evidence);
-    placed.uncertainty = verdict::estimateUncertainty(
-        signals.fixedSignals(pose, kBlockFactor), signals.filled(kBlockFactor), pose,
-        placed.evidence, space, placed.heights.residual, options.uncertainty);
+    placed.evidence.decoys = refined.decoys;
+    const map::SignalMap fixed = signals.fixedSignals(pose, kBlockFactor);
+    const map::SignalMap& moving = signals.filled(kBlockFactor);
+    const double systematic =
+        refine::disagreementOfChannels(fixed, moving, pose, options.dense).value_or(0.0);
+    placed.uncertainty =
+        verdict::estimateUncertainty(fixed, moving, pose, placed.evidence, space, systematic,
+                                     placed.heights.deviation(), options.uncertainty);
   });
   return placed;
 }

@@ -19,6 +19,8 @@ struct Located {
   std::vector<Match> rematches;       ///< the same of a second matching
   std::optional<locate::SearchReport> search;  ///< of the correlation search
   std::optional<paper::FlowReport> flow;       ///< of a matching of points
+  /// Significances of the best places of mirrored copies of the moving map, as of RefinedPose.
+  std::vector<double> decoys;
 };
 
 /// Another way to find placements, in the chain unchanged otherwise. Must be deterministic.
@@ -29,7 +31,7 @@ using Locator = std::function<Located(const map::GridMap& fixed, const map::Grid
 /// as the options say; by `locator` where it is not empty. Stage kLocate and, of the paper's way,
 /// those within it.
 Located locate(const PairMaps& maps, const refine::PairSignals& signals,
-               const locate::CorrelationOptions& search, const RegistrationOptions& options,
-               const Locator& locator, Monitor& monitor);
+               const locate::RowWaves& waves, const locate::CorrelationOptions& search,
+               const RegistrationOptions& options, const Locator& locator, Monitor& monitor);
 
 }  // namespace agricolmap::pipeline

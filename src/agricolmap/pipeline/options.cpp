@@ -104,7 +104,7 @@ constexpr std::array kNeeds = {
     Need{"cpd.min_matched", adaptsCpd, "cpd.kind = adapted"},
     Need{"signal.term",
          [](const RegistrationOptions& o) {
-           return !o.geometry_only || o.signal.term == map::DataTerm::kHeight;
+           return !o.geometry_only || o.signal.term == map::SignalTerm::kHeight;
          },
          "geometry_only = false"},
     Need{"flow.describe.term",
@@ -116,11 +116,6 @@ constexpr std::array kNeeds = {
          "flow.warps = true"},
     Need{"flow.scale_tolerance", [](const RegistrationOptions& o) { return o.flow.warps; },
          "flow.warps = true"},
-    Need{"hidden.fill",
-         [](const RegistrationOptions& o) {
-           return !o.hidden.fill || o.signal.term != map::DataTerm::kRgb;
-         },
-         "another signal.term than rgb"},
     Need{"hidden.radius", [](const RegistrationOptions& o) { return o.hidden.fill; },
          "hidden.fill = true"},
     Need{"hidden.whole", [](const RegistrationOptions& o) { return o.hidden.fill; },
@@ -141,11 +136,9 @@ RegistrationOptions resolved(const RegistrationOptions& chosen) {
   }
   RegistrationOptions options = chosen;
   if (options.geometry_only) {
-    options.signal.term = map::DataTerm::kHeight;
+    options.signal.term = map::SignalTerm::kHeight;
     if (flows(options)) options.flow.describe.term = map::DataTerm::kHeight;
   }
-  // Ground that is filled in has no colours.
-  if (options.signal.term == map::DataTerm::kRgb) options.hidden.fill = false;
   options.search.filter = options.filter;
   options.flow.seed = options.seed;
   options.affine.seed = options.seed;
@@ -191,6 +184,7 @@ RegistrationOptions preset(const std::string& name) {
     options.refine = RefineKind::kCpd;
     options.grid.exg = map::ExgKind::kPlain;
     options.grid.coarsen = false;
+    options.signal.term = map::SignalTerm::kExgHeight;
     options.hidden.fill = false;
     if (name == "paper-literal") makeLiteral(options);
     return options;

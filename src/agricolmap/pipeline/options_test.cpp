@@ -35,7 +35,7 @@ TEST(RegistrationOptions, WhatOneDecidesForOthersIsWrittenThere) {
   options.filter.floor = 0.2;
   options.seed = 9;
   const RegistrationOptions in_force = resolved(options);
-  EXPECT_EQ(in_force.signal.term, map::DataTerm::kHeight);
+  EXPECT_EQ(in_force.signal.term, map::SignalTerm::kHeight);
   // What has no effect stays as it is: a file with it is no request.
   EXPECT_EQ(in_force.flow.describe.term, map::DataTerm::kExgHeight);
   EXPECT_EQ(in_force.search.filter.floor, 0.2);
@@ -43,9 +43,6 @@ TEST(RegistrationOptions, WhatOneDecidesForOthersIsWrittenThere) {
   EXPECT_EQ(in_force.affine.seed, 9);
   options.association = AssociationKind::kFlow;
   EXPECT_EQ(resolved(options).flow.describe.term, map::DataTerm::kHeight);
-  options = {};
-  options.signal.term = map::DataTerm::kRgb;
-  EXPECT_FALSE(resolved(options).hidden.fill);
 }
 
 TEST(RegistrationOptions, LimitsAreCheckedAloneAndBesideOneAnother) {

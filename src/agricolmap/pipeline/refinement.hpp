@@ -25,7 +25,8 @@ struct Refined {
   std::optional<refine::RefinedPose> best;
   /// Other places that held when refined to the ranking level, most significant first.
   std::vector<refine::RefinedPose> rivals;
-  std::size_t held = 0;  ///< placements that did, whether distinct or not
+  std::vector<double> decoys;  ///< see Located
+  std::size_t held = 0;        ///< placements that did, whether distinct or not
   std::optional<CpdReport> cpd;
   std::string failure;  ///< in plain words when there is no winner
 };

@@ -27,6 +27,7 @@ Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located
   Refined refined = monitor.run(Stage::kRefine, [&] {
     return refinePlacements(signals, located.placements, maps.space.scale_axes, options);
   });
+  refined.decoys = located.decoys;
   outcome.trace = {.attempts = 1,
                    .located = std::move(located),
                    .held = refined.held,
@@ -50,12 +51,14 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
               const RegistrationOptions& options, const Locator& locator, Monitor& monitor) {
   const correlation::MapSignals moving(maps.moving, options.signal);
   const refine::PairSignals signals = signalsOf(fixed, moving, options, monitor);
+  const locate::RowWaves waves =
+      monitor.run(Stage::kSignals, [&] { return locate::rowWaves(fixed, moving); });
   Outcome best;
   std::optional<locate::SearchReport> last;
   for (std::size_t attempt = 0; attempt < most; ++attempt) {
     const auto search = locate::optionsOfAttempt(options.search, attempt, last);
     if (!search) break;
-    Located located = locate(maps, signals, *search, options, locator, monitor);
+    Located located = locate(maps, signals, waves, *search, options, locator, monitor);
     last = located.search;
     Outcome next = settle(maps, signals, std::move(located), {}, options, monitor);
     if (attempt == 0 || supersedes(next, best, options.verdict.rival)) best = std::move(next);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -29,6 +30,9 @@ namespace {
 
 constexpr float kMinWeight = 0.25F;  // share of a cell that must have been seen
 constexpr double kMinCells = 30.0;
+/// Plants are green and high in both maps, however little they have in common; soil may be wet or
+/// dry, brighter or darker than leaves.
+constexpr double kLeastGain[map::kSignalChannels] = {0.2, 0.2, 0.0};
 constexpr std::size_t kChunk = 2048;
 
 /// A seen cell of the moving map.
@@ -60,8 +64,9 @@ Samples collect(const map::SignalMap& moving) {
       const std::size_t i = moving.weight.index(r, c);
       if (moving.weight[i] < kMinWeight) continue;
       const Eigen::Vector2f p = (moving.frame.centre(r, c) - samples.middle).cast<float>();
-      samples.cells.push_back(
-          {p.x(), p.y(), moving.weight[i], {moving.channel[0][i], moving.channel[1][i]}});
+      Sample sample{p.x(), p.y(), moving.weight[i], {}};
+      for (int k = 0; k < map::kSignalChannels; ++k) sample.value[k] = moving.channel[k][i];
+      samples.cells.push_back(sample);
     }
   }
   return samples;
@@ -134,8 +139,12 @@ class FixedReader {
 
 /// Per channel: gain of the fixed values and robust deviation of the residual.
 struct Noise {
-  double gain[map::kSignalChannels] = {1.0, 1.0};
-  double deviation[map::kSignalChannels] = {1.0, 1.0};
+  double gain[map::kSignalChannels];
+  double deviation[map::kSignalChannels];
+  Noise() {
+    std::fill(std::begin(gain), std::end(gain), 1.0);
+    std::fill(std::begin(deviation), std::end(deviation), 1.0);
+  }
 };
 
 /// Sums of one pass over the samples. A sample's row of the Jacobian is (gx·q, gy·q) with
@@ -229,8 +238,7 @@ Sums pass(const Samples& samples, const FixedReader& reader, const Noise& noise,
 void updateNoise(const Sums& sums, Noise& noise) {
   for (int k = 0; k < map::kSignalChannels; ++k) {
     if (sums.weight[k] <= 0.0 || sums.ff[k] <= 0.0) continue;
-    // A gain that fell to zero would take the channel out for good.
-    noise.gain[k] = std::max(0.2, sums.fm[k] / sums.ff[k]);
+    noise.gain[k] = std::max(kLeastGain[k], sums.fm[k] / sums.ff[k]);
     noise.deviation[k] = std::max(0.05, std::sqrt(sums.rr[k] / sums.weight[k]));
   }
 }
@@ -254,12 +262,16 @@ double correlationOf(const Sums& sums, const bool used[]) {
 }  // namespace
 
 DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap& moving,
-                              const Eigen::Affine2d& start, const DenseRefineOptions& options) {
+                              const Eigen::Affine2d& start, const DenseRefineOptions& options,
+                              ChannelSet channels) {
   DenseRefineResult result;
   const Samples samples = collect(moving);
   if (samples.cells.empty()) return result;
-  const bool used[map::kSignalChannels] = {fixed.deviation[0] > 0.0 && moving.deviation[0] > 0.0,
-                                           fixed.deviation[1] > 0.0 && moving.deviation[1] > 0.0};
+  bool used[map::kSignalChannels];
+  for (int k = 0; k < map::kSignalChannels; ++k) {
+    used[k] = (channels & channelSet(k)) != 0U && fixed.has(k) && moving.has(k);
+  }
+  if (std::none_of(std::begin(used), std::end(used), [](bool use) { return use; })) return result;
   const Parameters first = parametersOf(start, samples.middle);
   Parameters current = first;
   Noise noise;

@@ -28,8 +28,13 @@ struct DenseRefineResult {
   RefineStatus status = RefineStatus::kNoOverlap;
   Eigen::Affine2d fixed_from_moving = Eigen::Affine2d::Identity();  ///< meaningful if converged
   double overlap = 0.0;      ///< share of the moving map's seen cells that the fixed map sees
-  double correlation = 0.0;  ///< robustly weighted, over both channels
+  double correlation = 0.0;  ///< robustly weighted, over the channels
 };
+
+/// Which of a signal map's channels take part, a bit each.
+using ChannelSet = unsigned;
+inline constexpr ChannelSet kAllChannels = (1U << map::kSignalChannels) - 1U;
+constexpr ChannelSet channelSet(int channel) { return 1U << static_cast<unsigned>(channel); }
 
 /// Minimises Σ_channels Σ_cells ρ((moving(x) − gain · fixed(A·x)) / σ) over a horizontal affine A,
 /// from `start`. Both maps at the same cell size, levelled frames.
@@ -38,7 +43,8 @@ struct DenseRefineResult {
 /// correlation rises. With the gain at the moving map, Σ fixed(A·x)² alone would draw the strip to
 /// where the fixed map is calm, the more the less the maps have in common (ExG of drilled wheat).
 DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap& moving,
-                              const Eigen::Affine2d& start, const DenseRefineOptions& options);
+                              const Eigen::Affine2d& start, const DenseRefineOptions& options,
+                              ChannelSet channels = kAllChannels);
 
 /// The same from every start, side by side; results in the order of the starts.
 std::vector<DenseRefineResult> refineEach(const map::SignalMap& fixed, const map::SignalMap& moving,

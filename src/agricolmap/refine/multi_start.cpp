@@ -67,8 +67,10 @@ RefinedPose refineFinely(const PairSignals& signals, const RefinedPose& start,
   RefinedPose best = start;
   for (const int factor : kFineFactors) {
     const map::SignalMap fixed = signals.fixedSignals(best.pose, factor);
-    const auto refine = factor >= kBasinFactor ? refineAcrossBasins : refineDense;
-    const DenseRefineResult finer = refine(fixed, signals.filled(factor), best.pose, options);
+    const map::SignalMap& moving = signals.filled(factor);
+    const DenseRefineResult finer = factor >= kBasinFactor
+                                        ? refineAcrossBasins(fixed, moving, best.pose, options)
+                                        : refineDense(fixed, moving, best.pose, options);
     if (finer.status != RefineStatus::kConverged ||
         finer.overlap < kLeastFinerOverlap * best.overlap) {
       break;

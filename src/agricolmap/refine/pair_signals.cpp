@@ -1,16 +1,6 @@
 #include "agricolmap/refine/pair_signals.hpp"
 
 namespace agricolmap::refine {
-namespace {
-
-map::GridMap withoutHidden(const correlation::MapSignals& moving,
-                           map::HiddenGroundOptions options) {
-  // The RGB term reads colours, which the hidden ground is not given.
-  if (moving.options().term == map::DataTerm::kRgb) options.fill = false;
-  return map::withHiddenGround(moving.grid(), options);
-}
-
-}  // namespace
 
 PairSignals::PairSignals(const correlation::MapSignals& fixed,
                          const correlation::MapSignals& moving,
@@ -18,7 +8,7 @@ PairSignals::PairSignals(const correlation::MapSignals& fixed,
                          const correlation::MatchedFilterOptions& filter)
     : fixed_(fixed),
       moving_(moving),
-      filled_(withoutHidden(moving, hidden)),
+      filled_(map::withHiddenGround(moving.grid(), hidden)),
       filled_signals_(filled_, moving.options()),
       score_(fixed.at(kRankingFactor), moving.at(kRankingFactor),
              fixed.filter(kRankingFactor, filter)) {}

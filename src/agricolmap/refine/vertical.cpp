@@ -30,6 +30,12 @@ namespace {
 constexpr std::size_t kMinCells = 50;
 /// At least this share of the cells stands for the ground, however tall they are.
 constexpr double kMinGroundShare = 0.05;
+/// With this share of them seeing ground in both maps there is no doubt which cells do.
+constexpr double kClearGroundShare = 0.2;
+/// Lowest cells that fit one another to this [m] are soil, and those that do to no more than that
+/// may be leaves.
+constexpr double kFlatResidual = 0.01;
+constexpr double kRoughResidual = 0.04;
 /// Lowest cells that fit one another to this [m] are right to centimetres, however few see the
 /// ground: drilled wheat, where levelling may take the foot of the canopy for the ground. Under a
 /// canopy that closes they differ by decimetres.
@@ -194,6 +200,25 @@ Eigen::Vector3d fitPlane(const std::vector<Pair>& pairs, const std::vector<doubl
   return model;
 }
 
+/// Under a canopy without gaps the lowest cells of a map from afar are leaves, and those of one
+/// from near are not: the offset is then one between leaves and soil, and nothing in the heights
+/// tells. The surfaces, which both maps see, give another offset; where they do not contradict it,
+/// either is right.
+double doubtOf(const std::vector<Pair>& pairs, const VerticalResult& result) {
+  std::vector<double> differences;
+  differences.reserve(pairs.size());
+  for (const Pair& pair : pairs) {
+    differences.push_back(pair.difference - result.slope.dot(pair.place));
+  }
+  const auto between = [](double value, double from, double to) {
+    return std::clamp((value - from) / (to - from), 0.0, 1.0);
+  };
+  const double hidden = between(result.ground_share, kClearGroundShare, kMinGroundShare);
+  // Leaves are not flat.
+  const double rough = between(result.residual, kFlatResidual, kRoughResidual);
+  return hidden * rough * std::abs(quantile(differences, 0.5) - result.offset);
+}
+
 /// Least squares of the fixed map's canopy heights on the moving map's.
 double canopyGain(const std::vector<Pair>& pairs) {
   double product = 0.0;
@@ -247,6 +272,7 @@ VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving
     result.slope.setZero();
     result.residual = level;
   }
+  result.doubt = doubtOf(pairs, result);
   result.status =
       result.slope.norm() > options.max_slope ? VerticalStatus::kTooSteep : VerticalStatus::kOk;
   return result;

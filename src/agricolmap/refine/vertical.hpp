@@ -4,6 +4,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/map/grid_map.hpp"
@@ -31,6 +33,12 @@ struct VerticalResult {
   double residual = 0.0;  ///< robust deviation of the ground cells from the model [m]
   std::size_t cells = 0;  ///< cells that both maps see
   double ground_share = 0.0;  ///< of these, the share that is ground in both maps
+  /// By how much the offset would be another one if the maps' surfaces were one, and not their
+  /// grounds, as far as the ground is hidden [m].
+  double doubt = 0.0;
+
+  /// Deviation of the height [m]: scatter of the ground, and the doubt what is ground.
+  double deviation() const { return std::hypot(residual, doubt / std::numbers::sqrt2); }
 };
 
 /// Offset and tilt from the cells that are ground in both maps. A leaf over a cell lifts it in one

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/map/blocks.hpp"
@@ -23,13 +24,14 @@ struct Cell {
 struct Normal {
   Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  double residual2 = 0.0;
-  double weight = 0.0;
+  double residual2[map::kSignalChannels] = {};
+  double weight[map::kSignalChannels] = {};
+  double cells = 0.0;
 };
 
 /// One linearisation of moving − gain·fixed(place + shift) around `shift`.
 Normal linearise(const map::SignalMap& fixed, const std::vector<Cell>& cells,
-                 const Eigen::Vector2d& shift, const double gain[], double deviation) {
+                 const Eigen::Vector2d& shift, const double gain[], const double deviation[]) {
   const double cell = fixed.frame.cell;
   const Eigen::Vector2d dx(0.5 * cell, 0.0);
   const Eigen::Vector2d dy(0.0, 0.5 * cell);
@@ -44,19 +46,23 @@ Normal linearise(const map::SignalMap& fixed, const std::vector<Cell>& cells,
     if (std::min({here.weight, east.weight, west.weight, north.weight, south.weight}) <= 0.0F) {
       continue;
     }
+    normal.cells += 1.0;
     for (int k = 0; k < map::kSignalChannels; ++k) {
+      if (gain[k] <= 0.0) continue;
       const Eigen::Vector2d slope =
           gain[k] / cell *
           Eigen::Vector2d(static_cast<double>(east.value[k] - west.value[k]),
                           static_cast<double>(north.value[k] - south.value[k]));
       const double residual =
           static_cast<double>(c.value[k]) - gain[k] * static_cast<double>(here.value[k]);
-      const double u = residual / (kRobust * deviation);
+      const double u = residual / (kRobust * deviation[k]);
       const double w = 1.0 / (1.0 + u * u);
-      normal.matrix += w * slope * slope.transpose();
-      normal.right += w * residual * slope;
-      normal.residual2 += w * residual * residual;
-      normal.weight += w;
+      // A channel counts as far as the maps agree in it.
+      const double information = w / (deviation[k] * deviation[k]);
+      normal.matrix += information * slope * slope.transpose();
+      normal.right += information * residual * slope;
+      normal.residual2[k] += w * residual * residual;
+      normal.weight[k] += w;
     }
   }
   return normal;
@@ -88,12 +94,16 @@ BlockShift shiftOf(const map::SignalMap& fixed, const std::vector<Cell>& cells,
   if (cells.size() < kLeastCells) return block;
   for (const Cell& c : cells) block.place += c.place;
   block.place /= static_cast<double>(cells.size());
-  double deviation = 1.0;
+  double deviation[map::kSignalChannels];
+  std::fill(std::begin(deviation), std::end(deviation), 1.0);
   Normal normal;
   for (int step = 0; step < kSteps; ++step) {
     normal = linearise(fixed, cells, block.shift, gain, deviation);
-    if (normal.weight < static_cast<double>(kLeastCells)) return block;
-    deviation = std::max(0.05, std::sqrt(normal.residual2 / normal.weight));
+    if (normal.cells < static_cast<double>(kLeastCells)) return block;
+    for (int k = 0; k < map::kSignalChannels; ++k) {
+      if (normal.weight[k] <= 0.0) continue;
+      deviation[k] = std::max(0.05, std::sqrt(normal.residual2[k] / normal.weight[k]));
+    }
     Eigen::Matrix2d damped = normal.matrix;
     damped.diagonal().array() += 1e-3 * normal.matrix.trace() + 1e-12;
     block.shift += damped.ldlt().solve(normal.right);
@@ -120,7 +130,9 @@ std::vector<BlockShift> shiftBlocks(const map::SignalMap& fixed, const map::Sign
            c < std::min(moving.frame.cols, static_cast<int>(high.x()) + 2); ++c) {
         const Eigen::Vector2d p = moving.frame.centre(r, c);
         if (moving.weight(r, c) <= 0.0F || !blocks[b].contains(strip.local(p))) continue;
-        cells[b].push_back({pose * p, {moving.channel[0](r, c), moving.channel[1](r, c)}});
+        Cell cell{pose * p, {}};
+        for (int k = 0; k < map::kSignalChannels; ++k) cell.value[k] = moving.channel[k](r, c);
+        cells[b].push_back(cell);
       }
     }
   });

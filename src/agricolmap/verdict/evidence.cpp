@@ -48,8 +48,7 @@ std::optional<BlockEvidence> placeBlock(const correlation::StripScore& score,
   const map::StripFrame& strip = score.strip();
   const double cell = frame.cell;
   const correlation::Template piece = correlation::makeTemplate(
-      score.moving(), block.centre, pose.linear(), boundsOf(block, strip), cell,
-      score.options().height_weight,
+      score.moving(), block.centre, pose.linear(), boundsOf(block, strip), cell, score.options(),
       [&](const Eigen::Vector2d& p) { return block.contains(strip.local(p)); });
   BlockEvidence evidence;
   evidence.moving = block.centre;
@@ -86,6 +85,12 @@ std::optional<BlockEvidence> placeBlock(const correlation::StripScore& score,
 }
 
 }  // namespace
+
+double Evidence::decoyRatio() const {
+  double highest = 1.0;
+  for (const double decoy : decoys) highest = std::max(highest, decoy);
+  return significance / highest;
+}
 
 double blockSide(const map::StripFrame& strip, const EvidenceOptions& options) {
   const double area = 4.0 * strip.half_extent.prod();

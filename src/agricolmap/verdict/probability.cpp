@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace agricolmap::verdict {
 namespace {
 
 /// A registration is right within this RMS displacement [m].
 constexpr double kLimit = 0.05;
+/// Part of what the blocks differ by that is deformation of the strip; the rest is their own noise.
+constexpr double kLocalShare = 0.5;
 /// Share of blocks that agree by chance: a circle of 8 cm in one of half a metre.
 constexpr double kChanceAgreement = 0.026;
 
@@ -16,20 +19,27 @@ struct Model {
   double intercept;
   VerdictFeatures weights;
 };
-// Of docs/results/calibration/{space,plane}/calibration.json; a test compares them.
-constexpr Model kAll = {-19.0314, {3.5448, 0.1172, 0.0000, 4.2849, -1.4576, -7.4809, 3.7044}};
-constexpr Model kPlane = {-10.9878, {4.9948, 0.1509, 0.1347, 3.3235, -1.6839, 0.0000, 1.0622}};
-
-double probabilityOf(const VerdictFacts& facts, const Model& model) {
-  const VerdictFeatures features = verdictFeatures(facts);
-  double log_odds = model.intercept;
-  for (std::size_t i = 0; i < features.size(); ++i) log_odds += model.weights[i] * features[i];
-  return 1.0 / (1.0 + std::exp(-log_odds));
-}
+// Of docs/results/calibration/calibration.json; a test compares them.
+constexpr Model kPlace = {-6.0, {1.5, 6.0, 0.5, 0.5, 1.0, 0.5}};
 
 /// Logarithm of a value between its limits; the worse one for NaN.
 double logWithin(double value, double low, double high, double unknown) {
   return std::log(std::isnan(value) ? unknown : std::clamp(value, low, high));
+}
+
+/// Of a root mean square error over a strip being within the limit, when `expected` [m] is what it
+/// comes to on average: a shift, a turn and two stretches make it, of which about four count alike.
+double withinLimit(double expected) {
+  if (!(expected >= 0.0)) return 0.0;
+  const double ratio = kLimit / std::max(expected, 1e-6);
+  const double half = 2.0 * ratio * ratio;  // of a chi-square variable of four degrees of freedom
+  return 1.0 - std::exp(-half) * (1.0 + half);
+}
+
+/// Of one normal error being within the limit.
+double heightWithinLimit(double deviation) {
+  if (!(deviation >= 0.0)) return 0.0;
+  return std::erf(kLimit / (std::numbers::sqrt2 * std::max(deviation, 1e-6)));
 }
 
 }  // namespace
@@ -44,21 +54,26 @@ VerdictFeatures verdictFeatures(const VerdictFacts& facts) {
   const double divergence = share * std::log(share / kChanceAgreement) +
                             (1.0 - share) * std::log((1.0 - share) / (1.0 - kChanceAgreement));
   const double beyond = std::log1p(std::sqrt(2.0 * n * std::max(0.0, divergence)));
-  const double error = std::hypot(facts.expected_rms, facts.local_rms);
-  return {logWithin(facts.uniqueness, 0.3, 4.0, 0.3),
-          std::log((k + 0.5) / (n - k + 0.5)),
-          share < kChanceAgreement ? -beyond : beyond,
-          logWithin(facts.significance, 1.0, 30.0, 1.0),
-          logWithin(error / kLimit, 0.1, 10.0, 10.0),
-          logWithin(facts.height_deviation / kLimit, 0.1, 10.0, 10.0),
-          logWithin(facts.overlap, 0.05, 1.0, 0.05)};
+  return {
+      logWithin(facts.uniqueness, 0.3, 4.0, 0.3),    logWithin(facts.decoy, 0.3, 4.0, 0.3),
+      std::log((k + 0.5) / (n - k + 0.5)),           share < kChanceAgreement ? -beyond : beyond,
+      logWithin(facts.significance, 1.0, 30.0, 1.0), logWithin(facts.overlap, 0.05, 1.0, 0.05)};
 }
 
-double rightProbability(const VerdictFacts& facts) { return probabilityOf(facts, kAll); }
+double placeProbability(const VerdictFacts& facts) {
+  const VerdictFeatures features = verdictFeatures(facts);
+  double log_odds = kPlace.intercept;
+  for (std::size_t i = 0; i < features.size(); ++i) log_odds += kPlace.weights[i] * features[i];
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
 
-// What is right in space is right in the plane: fitted apart, the two may say otherwise.
 double planeProbability(const VerdictFacts& facts) {
-  return std::max(probabilityOf(facts, kPlane), rightProbability(facts));
+  return placeProbability(facts) *
+         withinLimit(std::hypot(facts.expected_rms, kLocalShare * facts.local_rms));
+}
+
+double rightProbability(const VerdictFacts& facts) {
+  return planeProbability(facts) * heightWithinLimit(facts.height_deviation);
 }
 
 }  // namespace agricolmap::verdict

@@ -1,5 +1,9 @@
-// The probability that a registration is right, from its evidence: a logistic regression whose
-// weights `experiments/calibrate` finds on pairs with known truth (docs/campaign-suites.md).
+// The probability that a registration is right: that it is the right place, from the evidence,
+// times that of being within 5 cm there, from the errors that it states of itself.
+//
+// The first is a logistic regression whose weights `experiments/calibrate` finds on pairs with
+// known truth (docs/campaign-suites.md); the second follows from the stated errors, so that the two
+// can not contradict one another.
 #pragma once
 
 #include <array>
@@ -12,6 +16,7 @@ namespace agricolmap::verdict {
 struct VerdictFacts {
   double uniqueness = 0.0;    ///< see Evidence
   double significance = 0.0;  ///< see Evidence
+  double decoy = 0.0;         ///< significance over that of the best decoy
   double agreeing = 0.0;      ///< blocks
   double blocks = 0.0;
   double expected_rms = 0.0;      ///< see PoseUncertainty [m]
@@ -20,26 +25,21 @@ struct VerdictFacts {
   double overlap = 0.0;           ///< share of the moving map that the fixed map sees
 };
 
-inline constexpr std::size_t kVerdictFeatures = 7;
+inline constexpr std::size_t kVerdictFeatures = 6;
 using VerdictFeatures = std::array<double, kVerdictFeatures>;
 inline constexpr std::array<const char*, kVerdictFeatures> kVerdictFeatureNames = {
-    "log_uniqueness",   "agreement_log_odds", "agreement_beyond_chance",
-    "log_significance", "log_plane_error",    "log_height_error",
-    "log_overlap"};
+    "log_uniqueness",          "log_decoy",        "agreement_log_odds",
+    "agreement_beyond_chance", "log_significance", "log_overlap"};
 
-/// Whether more of a feature speaks for the registration (1) or against it (−1).
-inline constexpr std::array<int, kVerdictFeatures> kVerdictFeatureSigns = {1, 1, 1, 1, -1, -1, 1};
-
-/// Of the features, the one that the plane has nothing to do with.
-inline constexpr std::size_t kHeightFeature = 5;
-
-/// The facts on scales on which a logistic regression is at home; each within bounds, so that no
-/// single one decides alone.
+/// The facts that tell places apart, on scales on which a logistic regression is at home; each
+/// within bounds, so that no single one decides alone. More of any speaks for the registration.
 VerdictFeatures verdictFeatures(const VerdictFacts& facts);
 
-/// Of being within 5 cm RMS of the truth, 0…1.
-double rightProbability(const VerdictFacts& facts);
-/// Of its horizontal part being so: the right row and the right plant, whatever the height.
+/// Of being the right place, 0…1: the right row and the right plant.
+double placeProbability(const VerdictFacts& facts);
+/// Of being within 5 cm RMS of the truth in the plane, whatever the height.
 double planeProbability(const VerdictFacts& facts);
+/// Of being so in the plane and in height.
+double rightProbability(const VerdictFacts& facts);
 
 }  // namespace agricolmap::verdict

@@ -64,12 +64,10 @@ double expectedOver(const std::vector<BlockShift>& strip, const std::vector<Bloc
 
 }  // namespace
 
-std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed,
-                                                   const map::SignalMap& moving,
-                                                   const Eigen::Affine2d& pose,
-                                                   const Evidence& evidence,
-                                                   const SearchSpace& space, double height_residual,
-                                                   const UncertaintyOptions& options) {
+std::optional<PoseUncertainty> estimateUncertainty(
+    const map::SignalMap& fixed, const map::SignalMap& moving, const Eigen::Affine2d& pose,
+    const Evidence& evidence, const SearchSpace& space, double systematic, double height_residual,
+    const UncertaintyOptions& options) {
   if (evidence.block_side <= 0.0) return std::nullopt;
   const std::vector<BlockShift> strip = shiftBlocks(fixed, moving, pose, evidence.block_side);
   std::vector<BlockShift> blocks;
@@ -112,6 +110,9 @@ std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed,
       options.inflation * options.inflation * (variance + offset2 * count / kParameters) +
       options.floor * options.floor * count;
   result.covariance = scale * solver.solve(Square::Identity());
+  // In any direction, as a shift: what it is of heading and scales the blocks' scatter holds.
+  result.systematic_rms = systematic;
+  result.covariance.diagonal().head<2>().array() += 0.5 * systematic * systematic;
   result.expected_rms = expectedOver(strip, blocks, result);
   result.height_deviation =
       std::hypot(options.height_floor, options.height_inflation * height_residual);

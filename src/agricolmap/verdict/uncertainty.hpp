@@ -35,6 +35,9 @@ struct PoseUncertainty {
   double height_deviation = 0.0;                       ///< of the height, apart from the rest [m]
   /// Expected horizontal RMS error over the strip, that beyond the fixed map included [m].
   double expected_rms = 0.0;
+  /// Share of that which all blocks may have in common, because what the maps show of plants and of
+  /// soil contradict one another [m].
+  double systematic_rms = 0.0;
   double local_rms = 0.0;  ///< what the blocks differ by after the best affine: drift, wind [m]
 
   /// Derivative of a point's displacement to the five parameters.
@@ -47,12 +50,11 @@ struct PoseUncertainty {
 };
 
 /// Nothing when too few blocks can be compared. `fixed`, `moving`: of the same cell size, fine
-/// enough for centimetres. `height_residual`: robust deviation of the ground's heights [m].
-std::optional<PoseUncertainty> estimateUncertainty(const map::SignalMap& fixed,
-                                                   const map::SignalMap& moving,
-                                                   const Eigen::Affine2d& pose,
-                                                   const Evidence& evidence,
-                                                   const SearchSpace& space, double height_residual,
-                                                   const UncertaintyOptions& options);
+/// enough for centimetres. `systematic`: error that all blocks may have in common,
+/// `height_residual`: deviation of the ground's heights [m].
+std::optional<PoseUncertainty> estimateUncertainty(
+    const map::SignalMap& fixed, const map::SignalMap& moving, const Eigen::Affine2d& pose,
+    const Evidence& evidence, const SearchSpace& space, double systematic, double height_residual,
+    const UncertaintyOptions& options);
 
 }  // namespace agricolmap::verdict

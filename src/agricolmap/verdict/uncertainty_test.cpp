@@ -29,7 +29,7 @@ PoseUncertainty uncertaintyOf(double bend, double end = 12.0) {
   Evidence evidence;
   evidence.block_side = 1.0;
   const auto found = estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {},
-                                         0.005, {.floor = 0.0005});
+                                         0.0, 0.005, {.floor = 0.0005});
   EXPECT_TRUE(found.has_value());
   return found.value_or(PoseUncertainty{});
 }
@@ -68,10 +68,10 @@ TEST(Uncertainty, NeedsBlocks) {
   const map::SignalMap moving = texture({0.5, 0.5}, 20, 20, none);
   Evidence evidence;
   EXPECT_FALSE(
-      estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, {}));
+      estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, 0.0, {}));
   evidence.block_side = 1.0;
   EXPECT_FALSE(
-      estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, {}));
+      estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, 0.0, {}));
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ namespace {
 
 // Below these a piece of evidence is worth a sentence in the reasons of a refusal.
 constexpr double kWeakUniqueness = 1.8;
+constexpr double kWeakDecoy = 1.4;
 constexpr double kWeakAgreement = 0.55;
 constexpr double kLargeError = 0.03;  // [m]
 
@@ -111,6 +112,12 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
                     "highest other one",
                     evidence.uniqueness));
   }
+  if (evidence.decoyRatio() < kWeakDecoy) {
+    against.push_back(
+        fmt::format("a mirrored copy of the moving map, which fits nowhere, fits almost as well: "
+                    "the peak is {:.2f} times its highest one",
+                    evidence.decoyRatio()));
+  }
   if (evidence.agreement() < kWeakAgreement) {
     against.push_back(fmt::format("only {} of {} blocks, placed alone, agree with the whole",
                                   evidence.agreeing, evidence.blocks.size()));
@@ -134,7 +141,9 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
 std::vector<std::string> support(const Finding& finding, double plane, double all) {
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> reasons = {
-      fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness),
+      fmt::format("the peak is {:.2f} times the highest other one, and {:.2f} times that of a "
+                  "mirrored copy of the moving map, which fits nowhere",
+                  evidence.uniqueness, evidence.decoyRatio()),
       fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
                   evidence.blocks.size()),
       fmt::format("the probability of the right place (within 5 cm in the plane) is {}, "
@@ -142,10 +151,10 @@ std::vector<std::string> support(const Finding& finding, double plane, double al
                   percent(plane), percent(all))};
   if (finding.uncertainty) {
     reasons.push_back(fmt::format(
-        "expected error {:.1f} cm RMS in the plane and {:.1f} cm in height; {:.1f} cm "
-        "of local deformation remain that no affine undoes",
-        100 * finding.uncertainty->expected_rms, 100 * finding.uncertainty->height_deviation,
-        100 * finding.uncertainty->local_rms));
+        "expected error {:.1f} cm RMS in the plane ({:.1f} cm of it systematic) and {:.1f} cm in "
+        "height; {:.1f} cm of local deformation remain that no affine undoes",
+        100 * finding.uncertainty->expected_rms, 100 * finding.uncertainty->systematic_rms,
+        100 * finding.uncertainty->height_deviation, 100 * finding.uncertainty->local_rms));
   }
   return reasons;
 }
@@ -158,6 +167,7 @@ VerdictFacts factsOf(const Finding& finding) {
   const std::optional<PoseUncertainty>& uncertainty = finding.uncertainty;
   return {.uniqueness = evidence.uniqueness,
           .significance = evidence.significance,
+          .decoy = evidence.decoyRatio(),
           .agreeing = static_cast<double>(evidence.agreeing),
           .blocks = static_cast<double>(evidence.blocks.size()),
           .expected_rms = uncertainty ? uncertainty->expected_rms : unknown,

@@ -141,6 +141,7 @@ Json residualsJson(const pipeline::Registration& registration) {
 Json evidenceJson(const verdict::Evidence& evidence) {
   Json json;
   json["significance"] = number(evidence.significance);
+  json["decoys"] = evidence.decoys;
   json["uniqueness"] = number(evidence.uniqueness);
   json["agreement"] = number(evidence.agreement());
   json["agreeing_blocks"] = evidence.agreeing;
