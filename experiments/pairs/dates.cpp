@@ -13,8 +13,8 @@ namespace agricolmap::experiments {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-// Direction of the rows, read off the mosaics; their outline is turned by one degree more.
-constexpr double kRowHeading = -2.5 * kDegree;
+// Direction in which sums of greenness differ most from row to row, on all three dates.
+constexpr double kRowHeading = -3.0 * kDegree;
 constexpr double kAskew = 3.0 * kDegree;
 constexpr double kLeastValid = 0.99;  // share of a strip
 constexpr int kAttempts = 2000;
