@@ -5,7 +5,7 @@ import json
 import sys
 from pathlib import Path
 
-from . import calibrate, report
+from . import calibrate, honesty, report
 from .rows import RowError, read
 
 
@@ -15,11 +15,15 @@ def _analyse(arguments):
         epilog="In a document the lines from '<!-- analyse: FOLDER/TABLE -->' to '<!-- end -->' "
         "become that table of tables.md; FOLDER is the name of the output.")
     parser.add_argument("rows", nargs="+", type=Path, help="rows.csv, one or more")
-    parser.add_argument("-o", "--output", type=Path, required=True,
-                        help="folder for *.svg, *.csv, index.html and tables.md")
+    parser.add_argument("-o", "--output", type=Path,
+                        help="folder for *.svg, *.csv, index.html and tables.md; without it, prints "
+                        "what was accepted, how far off it is and whether what is stated holds")
     parser.add_argument("--title", default="Registration experiments", help="of the page")
     parser.add_argument("--document", type=Path, help="Markdown whose marked tables to update")
     given = parser.parse_args(arguments)
+    if not given.output:
+        print(honesty.text(read(given.rows)))
+        return
     tables = report.write(read(given.rows), given.output, given.title)
     if given.document:
         text = given.document.read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from .section import Section, Table
 from .shares import percent, wilson
 
 # Columns of squared Mahalanobis distances, their degrees of freedom and what they are of.
-_ELLIPSES = (("pose_mahalanobis2", 5, "five horizontal parameters", BLUE),
+ELLIPSES = (("pose_mahalanobis2", 5, "five horizontal parameters", BLUE),
              ("centre_mahalanobis2", 2, "the strip's centre", ORANGE),
              ("height_mahalanobis2", 1, "mean height", GREY))
 
@@ -46,7 +46,7 @@ def _reliability_plot(bins, answers):
 def _coverage(rows):
     nominal = np.arange(0, 1.0001, 0.05)
     table = []
-    for column, degrees, name, _ in _ELLIPSES:
+    for column, degrees, name, _ in ELLIPSES:
         below = chi2.cdf(rows[column].dropna(), degrees)
         for limit in nominal if len(below) else []:
             hits = int((below <= limit + 1e-12).sum())
@@ -58,7 +58,7 @@ def _coverage(rows):
 
 def _coverage_plot(table, answers):
     figure, axis = _square(f"{answers} accepted and right")
-    for _, _, name, colour in _ELLIPSES:
+    for _, _, name, colour in ELLIPSES:
         line = table[table.of == name]
         if line.empty:
             continue

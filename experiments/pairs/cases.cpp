@@ -24,8 +24,16 @@ bool belongsToFlight(const std::string& path) {
 }  // namespace
 
 std::string kindOf(PairSource source) {
-  if (source == PairSource::kPublished) return "real";
-  return source == PairSource::kSimulated ? "simulated" : "semi-real";
+  switch (source) {
+    case PairSource::kPublished:
+    case PairSource::kDates:
+      return "real";
+    case PairSource::kSimulated:
+    case PairSource::kOtherGenerator:
+      return "simulated";
+    default:
+      return "semi-real";
+  }
 }
 
 simulate::SimulationOptions Case::optionsFor(int seed) const {
@@ -69,6 +77,14 @@ std::string Case::text() const {
                         fmt::join(range.values, " "));
   }
   if (published) text += publishedText(*published);
+  if (dates) {
+    text += fmt::format("{} {} {} {} {}\n", dates->fixed, dates->moving, dates->begin, dates->end,
+                        dates->end_for_end);
+  }
+  if (slip) {
+    text += fmt::format("{} {} {} {}\n", slip->metres, slip->share, slip->along, first_strip);
+  }
+  text += folder;
   return text;
 }
 

@@ -8,16 +8,20 @@
 
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
+#include "experiments/pairs/dates.hpp"
 #include "experiments/pairs/published.hpp"
+#include "experiments/pairs/slip.hpp"
 
 namespace agricolmap::experiments {
 
 enum class PairSource {
-  kSimulated,   ///< SimulatedField
-  kBeetMosaic,  ///< strips of a window of a real sugar-beet orthomosaic with made-up heights
-  kBeetWhole,   ///< strips of all of its beets
-  kSoybean,     ///< strips of a real orthomosaic with its surface model; both real
-  kPublished,   ///< two real clouds, read from files
+  kSimulated,       ///< SimulatedField
+  kBeetMosaic,      ///< strips of a window of a real sugar-beet orthomosaic with made-up heights
+  kBeetWhole,       ///< strips of all of its beets
+  kSoybean,         ///< strips of a real orthomosaic with its surface model; both real
+  kPublished,       ///< two real clouds, read from files
+  kDates,           ///< strips of one flight over a real field on the map of another
+  kOtherGenerator,  ///< files of a generator that is not the product's
 };
 /// "simulated", "semi-real" (strips of real imagery; the second sensor is simulated) or "real".
 std::string kindOf(PairSource source);
@@ -44,10 +48,14 @@ struct Case {
   /// What methods are told of the guess; by default the paper's.
   PriorUncertainty told = {};
   std::optional<PublishedPair> published = {};  ///< of kPublished: its only pair
+  std::optional<DatePair> dates = {};           ///< of kDates
+  std::string folder = {};  ///< of kOtherGenerator: of its pairs' folders, in that of shared data
+  std::optional<Slip> slip = {};  ///< of kSimulated, where a part of the strip is displaced
+  int first_strip = 0;            ///< the number of the strips of a field's first seed
 
   /// The seed of the field that the pair of this seed lies in, and the strip's number in it.
   int fieldSeed(int seed) const { return seed - seed % strips_per_field; }
-  int stripOf(int seed) const { return seed % strips_per_field; }
+  int stripOf(int seed) const { return first_strip + seed % strips_per_field; }
   /// The simulation's options for the pair of this seed, ranges drawn.
   simulate::SimulationOptions optionsFor(int seed) const;
   /// Equal for pairs whose drone's clouds are the same to the bit.

@@ -25,9 +25,8 @@ std::optional<Coverage> coverageOf(const Eigen::Affine3d& found_transform,
   for (std::size_t i = 0; i < moving.size(); i += step) {
     const Eigen::Vector3d point = moving.filePoint(i);
     const Eigen::Vector3d found = levelled * (found_transform * point);
-    const Eigen::Vector3d belongs =
-        truth.points.empty() ? truth.best_affine * point : truth.points[i];
-    const Eigen::Vector3d missing = levelled * belongs - found;
+    // What the best affine leaves over is orthogonal to these parameters.
+    const Eigen::Vector3d missing = levelled * (truth.best_affine * point) - found;
     const Eigen::Matrix<double, 2, 5> j = uncertainty.jacobian(found.head<2>());
     normal += j.transpose() * j;
     right += j.transpose() * missing.head<2>();

@@ -10,7 +10,9 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/raster/raster_file.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/simulate/ortho/ortho_file.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
@@ -109,24 +111,42 @@ Cloud readUsable(const std::filesystem::path& path) {
 
 std::string PairMaker::unavailable(const Case& chosen) const {
   if (chosen.source == PairSource::kSimulated) return {};
+  if (chosen.source == PairSource::kOtherGenerator) {
+    if (std::filesystem::exists(shared_ / chosen.folder)) return {};
+    return fmt::format("{} is not here; make it with scripts/other-generator and give --shared",
+                       (shared_ / chosen.folder).string());
+  }
   if (chosen.published) {
     if (chosen.published->true_fixed_from_moving) return {};
     return fmt::format("{} has no truth; `agricolmap control-points` makes one",
                        chosen.published->moving_cloud.parent_path().string());
   }
-  const std::filesystem::path path =
-      shared_ / (chosen.source == PairSource::kSoybean ? kSoybeanFolder : kBeetFile);
-  if (std::filesystem::exists(path)) return {};
-  return fmt::format("{} is not here; give --shared", path.string());
+  std::vector<std::string> paths = {chosen.source == PairSource::kSoybean ? kSoybeanFolder
+                                                                          : kBeetFile};
+  if (chosen.dates) paths = {dateFile(chosen.dates->fixed), dateFile(chosen.dates->moving)};
+  for (const std::string& path : paths) {
+    if (!std::filesystem::exists(shared_ / path)) {
+      return fmt::format("{} is not here; give --shared", (shared_ / path).string());
+    }
+  }
+  return {};
 }
 
 Pair PairMaker::make(const Case& chosen, int seed) {
   if (chosen.published) return readPublished(*chosen.published);
   const simulate::SimulationOptions options = chosen.optionsFor(seed);
   const int strip = chosen.stripOf(seed);
+  if (chosen.dates) return datePair(*chosen.dates, options);
+  if (chosen.source == PairSource::kOtherGenerator) {
+    return readGenerated(shared_ / chosen.folder / fmt::format("{}", seed));
+  }
   if (chosen.source == PairSource::kSoybean) return soybeanPair(options, strip);
   fly(chosen, seed, options);
-  if (field_) return fromStrip(field_->strip(options, strip), {field_, &field_->uav()});
+  if (field_) {
+    simulate::SimulatedStrip made = field_->strip(options, strip);
+    if (chosen.slip) displacePart(made, *chosen.slip, options);
+    return fromStrip(std::move(made), {field_, &field_->uav()});
+  }
   return fromStrip(ortho_->strip(options, strip), {ortho_, &ortho_->uav()});
 }
 
@@ -205,14 +225,48 @@ Pair PairMaker::soybeanPair(const simulate::SimulationOptions& options, int stri
   return made;
 }
 
-Pair PairMaker::readPublished(const PublishedPair& pair) {
-  if (fixed_file_ != pair.fixed_cloud) {
-    // The old cloud goes before the new one is read.
-    fixed_file_.clear();
-    fixed_.reset();
-    fixed_ = std::make_shared<const Cloud>(readUsable(pair.fixed_cloud));
-    fixed_file_ = pair.fixed_cloud;
+template <typename Read>
+void PairMaker::keepFixed(const std::filesystem::path& file, const Read& read) {
+  if (fixed_file_ == file) return;
+  // The old cloud goes before the new one is read.
+  fixed_file_.clear();
+  fixed_.reset();
+  fixed_ = std::make_shared<const Cloud>(read(file));
+  fixed_file_ = file;
+}
+
+Pair PairMaker::datePair(const DatePair& dates, const simulate::SimulationOptions& options) {
+  keepFixed(shared_ / dateFile(dates.fixed),
+            [](const std::filesystem::path& file) { return layFlat(io::readRaster(file)); });
+  FlatStrip strip = cutStrip(io::readRaster(shared_ / dateFile(dates.moving)), dates, options);
+  Pair made;
+  made.fixed = fixed_;
+  made.moving = std::move(strip.cloud);
+  made.guess = strip.geotag.prior;
+  made.truth.best_affine = strip.geotag.nominal;
+  made.overlaps = !options.mirrored;
+  return made;
+}
+
+Pair PairMaker::readGenerated(const std::filesystem::path& folder) {
+  keepFixed(folder / "uav.ply", readUsable);
+  Pair made;
+  made.fixed = fixed_;
+  made.moving = readUsable(folder / "ugv.ply");
+  // It bakes the guess's error into the robot's cloud.
+  made.guess = Eigen::Affine3d::Identity();
+  made.truth.best_affine = io::readMatrix(folder / "best.txt");
+  // Where the robot recorded each point, without its drift and that of the drone's map.
+  const Eigen::Affine3d nominal = io::readMatrix(folder / "truth.txt");
+  made.truth.points.reserve(made.moving.size());
+  for (std::size_t i = 0; i < made.moving.size(); ++i) {
+    made.truth.points.emplace_back(nominal * made.moving.filePoint(i));
   }
+  return made;
+}
+
+Pair PairMaker::readPublished(const PublishedPair& pair) {
+  keepFixed(pair.fixed_cloud, readUsable);
   Pair made;
   made.fixed = fixed_;
   made.moving = readUsable(pair.moving_cloud);

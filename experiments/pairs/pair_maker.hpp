@@ -48,6 +48,11 @@ class PairMaker {
   simulate::OrthoField readAllBeets() const;
   void loadSoybean();
   Pair readPublished(const PublishedPair& pair);
+  Pair datePair(const DatePair& dates, const simulate::SimulationOptions& options);
+  Pair readGenerated(const std::filesystem::path& folder);
+  /// Makes `fixed_` what `read` gives, unless it is of this file already.
+  template <typename Read>
+  void keepFixed(const std::filesystem::path& file, const Read& read);
 
   std::filesystem::path shared_;
   std::optional<Soybean> soybean_;

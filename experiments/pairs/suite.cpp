@@ -26,6 +26,8 @@ struct Entry {
   const char* suite;
   Settings settings;
   MakeCases cases;
+  int pairs = 60;
+  int first_seed = 5001;
 };
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = [] {
@@ -38,6 +40,15 @@ const std::vector<Entry>& entries() {
       made.push_back({name, Settings::kFinal, viewCases});
       made.push_back({name, Settings::kDevelop, viewCases});
     }
+    const auto add = [&](const char* name, MakeCases cases, int pairs, int first, int apart) {
+      for (int i = 0; i < 3; ++i) {
+        made.push_back({name, kSettings[i].first, cases, pairs, first + i * apart});
+      }
+    };
+    add("dates", dateCases, 20, 5001, 0);
+    add("mirrored", mirroredDateCases, 20, 5001, 0);
+    add("slips", slipCases, 1, 5001, 0);
+    add("other-generator", otherGeneratorCases, 4, 1001, 1000);  // as its script's
     return made;
   }();
   return all;
@@ -90,7 +101,11 @@ Suite makeSuite(const std::string& name, const SuiteOptions& options) {
   }
   for (const Entry& entry : entries()) {
     if (entry.suite != name || entry.settings != options.settings) continue;
-    Suite suite{.name = name, .settings = options.settings, .cases = entry.cases(options)};
+    Suite suite{.name = name,
+                .settings = options.settings,
+                .cases = entry.cases(options),
+                .pairs = entry.pairs,
+                .first_seed = entry.first_seed};
     if (entry.cases == viewCases) {
       suite.curves = curvesOf(name, options.quick);
       suite.matching_only = name == "inliers";

@@ -181,7 +181,7 @@ void list(const std::string& what, const Arguments& arguments) {
     for (const std::string& name : suiteNames()) {
       std::vector<std::string> settings;
       for (const Settings one : settingsOf(name)) settings.push_back(toString(one));
-      fmt::print("{:<12} {}\n", name, fmt::join(settings, ", "));
+      fmt::print("{:<16} {}\n", name, fmt::join(settings, ", "));
     }
   } else {
     for (const Suite& suite : suitesOf(arguments)) {

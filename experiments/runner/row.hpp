@@ -21,7 +21,7 @@ inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 /// scales relative (0.1: 10 %). What cases should reach stands in analysis/targets.csv.
 struct Row {
   // What was run.
-  std::string suite;      ///< paper, locate, curves; translation, heading, joint, accuracy, inliers
+  std::string suite;      ///< one of `agricolmap_experiments list suites`
   std::string settings;   ///< develop, calibrate or final: disjoint ways in which pairs may differ
   std::string case_name;  ///< kind of pair: one of `agricolmap_experiments list cases`
   std::string dataset;    ///< crop or imagery that the pair is of, such as sugar-beet-10m
