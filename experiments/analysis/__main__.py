@@ -34,21 +34,19 @@ def _analyse(arguments):
 
 def _calibrate(arguments):
     parser = argparse.ArgumentParser(
-        prog="calibrate", description="Fits the probability that a registration is right to rows "
+        prog="calibrate", description="Fits the probability that a registration is the right place to rows "
         "of pairs with known truth.")
     parser.add_argument("rows", nargs="+", type=Path, help="rows.csv to fit to, one or more")
     parser.add_argument("--test", nargs="+", type=Path, default=[], help="rows.csv to test on")
     parser.add_argument("-o", "--output", type=Path, required=True,
                         help="folder for calibration.json and reliability.csv")
     parser.add_argument("--method", default="default", help="whose rows [default]")
-    parser.add_argument("--plane", action="store_true",
-                        help="right means the horizontal RMS, without the heights")
     given = parser.parse_args(arguments)
     rows = {"fitted to": read(given.rows)}
     if given.test:
         rows["tested on"] = read(given.test)
     made, bins = calibrate.calibrate(
-        {purpose: of[of.method == given.method] for purpose, of in rows.items()}, given.plane)
+        {purpose: of[of.method == given.method] for purpose, of in rows.items()})
     given.output.mkdir(parents=True, exist_ok=True)
     text = json.dumps(made, indent=2)
     (given.output / "calibration.json").write_text(text + "\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Fits the verdict's probability to rows of pairs with known truth.
+"""Fits the verdict's probability of the place to rows of pairs with known truth.
 
 A logistic regression with an L2 penalty on standardised weights, whose signs are bound: more
 evidence never makes a registration less probable. The weights belong into
@@ -10,8 +10,8 @@ import pandas as pd
 from scipy.optimize import minimize
 from scipy.special import expit, logit
 
-from .probability import (FEATURE_SIGNS, HEIGHT_FEATURE, RIGHT_RMS_M, features, quality,
-                          reliability, right as is_right, stated)
+from .probability import (FEATURE_SIGNS, PLACE_RMS_M, features, quality, reliability, right_place,
+                          stated)
 
 RIDGE = 1.0
 FOLDS = 5
@@ -23,15 +23,11 @@ class CalibrationError(Exception):
     """Rows that a model cannot be fitted to."""
 
 
-def samples(rows, plane):
-    """The answers among the rows: features, whether right, field; and the rows without an answer.
-
-    `plane`: right in the horizontal alone, on which heights say nothing.
-    """
+def samples(rows):
+    """The answers among the rows: features, whether right, field; and the rows without an answer."""
     answered = rows.rms.notna() & rows.uniqueness.notna()
     answers = rows[answered]
-    of_features = features(answers).assign(**{HEIGHT_FEATURE: 0.0} if plane else {})
-    return of_features, is_right(answers, plane), answers.field.to_numpy(), rows[~answered]
+    return features(answers), right_place(answers), answers.field.to_numpy(), rows[~answered]
 
 
 def fit(of_features, right):
@@ -94,20 +90,20 @@ def _origin(purpose, rows):
                                                           sort=False))
 
 
-def calibrate(rows, plane):
+def calibrate(rows):
     """`rows`: those "fitted to" and, perhaps, "tested on". What calibration.json holds, and the
     bins of the reliability diagrams."""
-    of_features, right, field, unanswered = samples(rows["fitted to"], plane)
+    of_features, right, field, unanswered = samples(rows["fitted to"])
     model = fit(of_features, right)
     unseen = cross_validate(of_features, right, field)
     chosen = threshold(unseen, right)
     statements = {"cross-validation": (unseen, right), "fit": (stated(model, of_features), right)}
     if "tested on" in rows:
-        test_features, test_right, _, _ = samples(rows["tested on"], plane)
+        test_features, test_right, _, _ = samples(rows["tested on"])
         statements["test"] = (stated(model, test_features), test_right)
     made = {
         "origin": "".join(_origin(purpose, of) for purpose, of in rows.items()),
-        "right": {"rms_m": RIGHT_RMS_M},
+        "right": {"rms_horizontal_m": PLACE_RMS_M},
         **model,
         "threshold": chosen,
         "rows_without_answer": len(unanswered),

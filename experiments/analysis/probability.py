@@ -1,7 +1,7 @@
 """What the stated probability is worth: bins, calibration errors, and the features it rests on.
 
 The features repeat agricolmap::verdict::verdictFeatures (src/agricolmap/verdict/probability.cpp);
-a test recomputes the probabilities that the program stated in committed rows.
+a test recomputes the probabilities of the place that the program stated in committed rows.
 """
 
 import numpy as np
@@ -13,19 +13,19 @@ from .shares import wilson
 
 # A registration is right within this RMS displacement [m].
 RIGHT_RMS_M = 0.05
+# It is the right place, row and plant, within this.
+PLACE_RMS_M = 0.10
 # Share of blocks that agree by chance: a circle of 8 cm in one of half a metre.
 CHANCE_AGREEMENT = 0.026
-# Each feature with whether more of it speaks for a registration (1) or against it (-1).
+# Each feature with whether more of it speaks for the place (1) or against it (-1).
 FEATURE_SIGNS = {
     "log_uniqueness": 1,
+    "log_decoy": 1,
     "agreement_log_odds": 1,
     "agreement_beyond_chance": 1,
     "log_significance": 1,
-    "log_plane_error": -1,
-    "log_height_error": -1,
     "log_overlap": 1,
 }
-HEIGHT_FEATURE = "log_height_error"
 BINS = 10
 
 
@@ -35,6 +35,10 @@ def right(rows, plane=False):
     return (~rows.negative & (rms <= RIGHT_RMS_M)).to_numpy()
 
 
+def right_place(rows):
+    return (~rows.negative & (rows.rms_horizontal <= PLACE_RMS_M)).to_numpy()
+
+
 def _log_within(values, low, high, unknown):
     return np.log(np.where(np.isnan(values), unknown, np.clip(values, low, high)))
 
@@ -42,8 +46,7 @@ def _log_within(values, low, high, unknown):
 def features(rows):
     """The verdict's features of each row; what is not known counts as badly as it can."""
     column = {name: rows[name].to_numpy(float) for name in (
-        "uniqueness", "agreeing", "blocks", "significance", "expected_rms", "local_rms",
-        "height_deviation", "overlap")}
+        "uniqueness", "decoy", "agreeing", "blocks", "significance", "overlap")}
     blocks = np.where(column["blocks"] >= 1, np.minimum(column["blocks"], 1e6), 1)
     agreeing = np.where(column["agreeing"] >= 0, np.minimum(column["agreeing"], blocks), 0)
     # Twice the log-likelihood ratio of the agreeing blocks against chance, on the scale of a
@@ -52,15 +55,12 @@ def features(rows):
     divergence = share * np.log(share / CHANCE_AGREEMENT) + (1 - share) * np.log(
         (1 - share) / (1 - CHANCE_AGREEMENT))
     beyond = np.log1p(np.sqrt(2 * blocks * np.maximum(0, divergence)))
-    plane_error = np.hypot(column["expected_rms"], column["local_rms"])
     return pd.DataFrame({
         "log_uniqueness": _log_within(column["uniqueness"], 0.3, 4, 0.3),
+        "log_decoy": _log_within(column["decoy"], 0.3, 4, 0.3),
         "agreement_log_odds": np.log((agreeing + 0.5) / (blocks - agreeing + 0.5)),
         "agreement_beyond_chance": np.where(share < CHANCE_AGREEMENT, -beyond, beyond),
         "log_significance": _log_within(column["significance"], 1, 30, 1),
-        "log_plane_error": _log_within(plane_error / RIGHT_RMS_M, 0.1, 10, 10),
-        "log_height_error": _log_within(
-            column["height_deviation"] / RIGHT_RMS_M, 0.1, 10, 10),
         "log_overlap": _log_within(column["overlap"], 0.05, 1, 0.05),
     }, index=rows.index)
 

@@ -13,13 +13,15 @@ FLAGS = ("negative", "in_process", "accepted", "right", "right_in_plane")
 NUMBERS = (
     "setting", "guess_scale", "guess_translation", "guess_heading",
     "rms", "rms_horizontal", "rms_vertical", "worst", "rms_to_best_affine", "e_t", "e_r", "e_s",
-    "probability", "plane_probability", "uniqueness", "significance", "agreeing", "blocks",
-    "expected_rms", "local_rms", "height_deviation", "overlap", "block_rms", "correlation",
+    "probability", "plane_probability", "place_probability", "uniqueness", "significance", "decoy",
+    "agreeing", "blocks", "expected_rms", "systematic_rms", "local_rms", "height_deviation", "overlap", "block_rms", "correlation",
     "attempts", "pose_mahalanobis2", "centre_mahalanobis2", "height_mahalanobis2",
     "matches", "matches_right", "matches_coherent", "rematches", "rematches_right",
     "rematches_coherent", "fixed_points", "moving_points", "make_s", "wall_s", "run_s", "cpu_s",
     "peak_mib", "idle_mib")
 COLUMNS = TEXTS + WHOLE + FLAGS + NUMBERS
+# Rows that documents quote may be older than these.
+LATER = ("place_probability", "decoy", "systematic_rms")
 KEY = ["suite", "settings", "case_name", "seed", "setting", "guess_scale", "method"]
 STATUSES = ("accepted", "rejected", "ambiguous", "failed", "timeout", "crashed", "skipped")
 
@@ -41,7 +43,7 @@ def _lines(path):
 
 
 def _check_header(path, header):
-    missing = [name for name in COLUMNS if name not in header]
+    missing = [name for name in COLUMNS if name not in header and name not in LATER]
     unknown = [name for name in header if name not in COLUMNS]
     if missing or unknown or len(set(header)) != len(header):
         raise RowError(
@@ -85,7 +87,11 @@ def read(paths):
         for number, line in enumerate(lines[1:], start=2):
             if len(line) != len(lines[0]):
                 raise RowError(f"{path}:{number}: has {len(line)} fields, not {len(lines[0])}")
-        table = _typed(path, pd.DataFrame(lines[1:], columns=lines[0]))
+        table = pd.DataFrame(lines[1:], columns=lines[0])
+        for column in LATER:
+            if column not in table:
+                table[column] = ""
+        table = _typed(path, table)
         tables.append(table.assign(place=[f"{path}:{i + 2}" for i in table.index]))
     rows = pd.concat(tables, ignore_index=True)
     double = rows.duplicated(KEY)

@@ -63,8 +63,10 @@ void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
   outcome.facts.insert(outcome.facts.end(),
                        {{"probability", result.verdict.probability},
                         {"plane_probability", result.verdict.plane_probability},
+                        {"place_probability", result.verdict.place_probability},
                         {"uniqueness", evidence.uniqueness},
                         {"significance", evidence.significance},
+                        {"decoy", evidence.decoyRatio()},
                         {"agreeing", static_cast<double>(evidence.agreeing)},
                         {"blocks", static_cast<double>(evidence.blocks.size())},
                         {"overlap", placed.overlap},
@@ -73,6 +75,7 @@ void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
   if (!placed.uncertainty) return;
   outcome.facts.insert(outcome.facts.end(),
                        {{"expected_rms", placed.uncertainty->expected_rms},
+                        {"systematic_rms", placed.uncertainty->systematic_rms},
                         {"local_rms", placed.uncertainty->local_rms},
                         {"height_deviation", placed.uncertainty->height_deviation}});
   outcome.stated = StatedError{*placed.uncertainty, result.maps.frames.levelled_from_fixed};

@@ -64,12 +64,16 @@ struct Row {
   // What the product states of its answer; empty for peers.
   double probability = kNotKnown;        ///< of being right (RMS within 5 cm)
   double plane_probability = kNotKnown;  ///< of being so in the plane
+  double place_probability = kNotKnown;  ///< of being the right place, however exact
   // The facts that the probabilities rest on (verdict/probability.hpp).
   double uniqueness = kNotKnown;
   double significance = kNotKnown;
+  double decoy = kNotKnown;
   double agreeing = kNotKnown;  ///< blocks that agree,
   double blocks = kNotKnown;    ///< of so many that can be compared
   double expected_rms = kNotKnown;
+  double systematic_rms =
+      kNotKnown;  ///< part of that which plants and soil contradict one another by
   double local_rms = kNotKnown;
   double height_deviation = kNotKnown;
   double overlap = kNotKnown;

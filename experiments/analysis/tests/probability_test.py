@@ -7,7 +7,7 @@ import pandas as pd
 from analysis import calibrate, probability, rows
 from analysis.tests import RESULTS
 
-FITTED = {False: RESULTS / "calibration" / "space", True: RESULTS / "calibration" / "plane"}
+FITTED = RESULTS / "calibration"
 
 
 def drawn(count, weights, intercept=-0.7, seed=5):
@@ -21,21 +21,21 @@ def drawn(count, weights, intercept=-0.7, seed=5):
 
 class CalibrateTest(unittest.TestCase):
     def test_recovers_the_model_that_drew_the_data(self):
-        features, right, model = drawn(20000, [1.5, 0.5, 0.2, 0.8, -2.0, -0.3, 0.1])
+        features, right, model = drawn(20000, [1.5, 2.0, 0.5, 0.2, 0.8, 0.1])
         fitted = calibrate.fit(features, right)
         self.assertAlmostEqual(fitted["intercept"], model["intercept"], delta=0.12)
         for name, weight in model["weights"].items():
             self.assertAlmostEqual(fitted["weights"][name], weight, delta=0.1)
 
     def test_a_weight_of_the_wrong_sign_is_left_out(self):
-        features, right, _ = drawn(20000, [1.5, -0.5, 0.2, 0.8, -2.0, 0.7, 0.1])
+        features, right, _ = drawn(20000, [1.5, 2.0, -0.5, 0.2, -0.8, 0.1])
         weights = calibrate.fit(features, right)["weights"]
         self.assertEqual(weights["agreement_log_odds"], 0.0)
-        self.assertEqual(weights["log_height_error"], 0.0)
+        self.assertEqual(weights["log_significance"], 0.0)
         self.assertGreater(weights["log_uniqueness"], 0.5)
 
     def test_needs_answers_of_both_kinds(self):
-        features, right, _ = drawn(50, [1] * 7)
+        features, right, _ = drawn(50, [1] * 6)
         with self.assertRaises(calibrate.CalibrationError):
             calibrate.fit(features, np.ones_like(right))
 
@@ -47,43 +47,39 @@ class CalibrateTest(unittest.TestCase):
         self.assertEqual((chosen["right"], chosen["right_refused"]), (4, 2))
 
     def test_a_field_is_in_one_fold_only(self):
-        features, right, _ = drawn(300, [1] * 7)
+        features, right, _ = drawn(300, [1] * 6)
         field = np.repeat(np.arange(10), 30)
         together = calibrate.cross_validate(features, right, field)
         rest = ~np.isin(field, [3, 8])
         model = calibrate.fit(features[rest], right[rest])
         np.testing.assert_allclose(together[~rest], probability.stated(model, features[~rest]))
 
-    def test_committed_calibrations_are_those_of_the_committed_rows(self):
-        table = rows.read([RESULTS / "calibration" / "rows.csv"])
-        for plane, folder in FITTED.items():
-            with self.subTest(plane=plane):
-                made, _ = calibrate.calibrate({"fitted to": table}, plane)
-                kept = json.loads((folder / "calibration.json").read_text())
-                self.assertEqual(made.keys(), kept.keys())
-                self.assertAlmostEqual(made["intercept"], kept["intercept"], places=5)
-                for name, weight in kept["weights"].items():
-                    self.assertAlmostEqual(made["weights"][name], weight, places=5)
-                for name, figures in kept["sets"].items():
-                    for figure, value in figures.items():
-                        self.assertAlmostEqual(made["sets"][name][figure], value, places=6)
+    def test_the_committed_calibration_is_that_of_the_committed_rows(self):
+        made, _ = calibrate.calibrate({"fitted to": rows.read([FITTED / "rows.csv"])})
+        kept = json.loads((FITTED / "calibration.json").read_text())
+        self.assertEqual(made.keys(), kept.keys())
+        self.assertAlmostEqual(made["intercept"], kept["intercept"], places=5)
+        for name, weight in kept["weights"].items():
+            self.assertAlmostEqual(made["weights"][name], weight, places=5)
+        for name, figures in kept["sets"].items():
+            for figure, value in figures.items():
+                self.assertAlmostEqual(made["sets"][name][figure], value, places=6)
 
 
 class StatedTest(unittest.TestCase):
     def test_features_are_those_of_the_program(self):
         """What the program stated in rows made with the committed weights."""
-        model = json.loads((FITTED[False] / "calibration.json").read_text())
-        table = rows.read([RESULTS / "refiners" / "rows.csv",
-                           RESULTS / "negatives" / "rows.csv"])
-        self.assertGreater(table.probability.notna().sum(), 100)
+        model = json.loads((FITTED / "calibration.json").read_text())
+        table = rows.read([RESULTS / "elsewhere" / "rows.csv"])
+        table = table[table.place_probability.notna() & (table.status != "ambiguous")]
+        self.assertGreater(len(table), 100)
         np.testing.assert_allclose(probability.stated(model, probability.features(table)),
-                                   table.probability, atol=1e-4)
+                                   table.place_probability, atol=1e-4)
 
     def test_what_is_not_known_counts_as_badly_as_it_can(self):
         known = pd.DataFrame({
-            "uniqueness": [2.0], "agreeing": [9.0], "blocks": [10.0], "significance": [9.0],
-            "expected_rms": [0.01], "local_rms": [0.01], "height_deviation": [0.01],
-            "overlap": [1.0]})
+            "uniqueness": [2.0], "decoy": [2.0], "agreeing": [9.0], "blocks": [10.0],
+            "significance": [9.0], "overlap": [1.0]})
         features = probability.features(known)
         for column in known:
             unknown = probability.features(known.assign(**{column: np.nan}))

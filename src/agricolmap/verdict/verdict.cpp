@@ -46,9 +46,7 @@ void listOptions(OptionTable& table, VerdictOptions& options) {
                "how far beyond the prior's limit the heading may come out");
 }
 
-Verdict rejectBecause(std::string reason) {
-  return {Status::kRejected, {std::move(reason)}, 0.0, 0.0};
-}
+Verdict rejectBecause(std::string reason) { return {Status::kRejected, {std::move(reason)}}; }
 
 namespace {
 
@@ -178,11 +176,12 @@ VerdictFacts factsOf(const Finding& finding) {
 
 Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options) {
   std::vector<std::string> against = contradictions(finding, space, options);
-  if (!against.empty()) return {Status::kRejected, std::move(against), 0.0, 0.0};
+  if (!against.empty()) return {Status::kRejected, std::move(against)};
   const Evidence& evidence = finding.evidence;
   const VerdictFacts facts = factsOf(finding);
   const double all = rightProbability(facts);
   const double plane = planeProbability(facts);
+  const double place = placeProbability(facts);
   const auto rivals = std::count_if(
       finding.rivals.begin(), finding.rivals.end(),
       [&](double significance) { return significance >= options.rival * evidence.significance; });
@@ -194,12 +193,13 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
                          "a better initial guess can",
                          rivals + 1)},
             std::min(all, most),
-            std::min(plane, most)};
+            std::min(plane, most),
+            std::min(place, most)};
   }
   if (plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
-    return {Status::kRejected, doubts(finding, plane, options), all, plane};
+    return {Status::kRejected, doubts(finding, plane, options), all, plane, place};
   }
-  return {Status::kAccepted, support(finding, plane, all), all, plane};
+  return {Status::kAccepted, support(finding, plane, all), all, plane, place};
 }
 
 }  // namespace agricolmap::verdict
