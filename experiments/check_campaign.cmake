@@ -1,20 +1,10 @@
 # The program end to end on one small field: rows of children and of this process; a second call has
 # nothing left to do; what is wrong is said.
+include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 file(REMOVE_RECURSE ${FOLDER})
 set(limitless ${EXPERIMENTS} run -o ${FOLDER} --quick --settings develop --case sugar-beet-10m
     --suite translation,accuracy,inliers --method default,icp-affine,paper --jobs 2)
 set(call ${limitless} --time-limit 8)
-
-function(expect expected message)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT code EQUAL expected)
-    message(FATAL_ERROR "${ARGN}: ends with ${code}, not ${expected}: ${text}")
-  endif()
-  string(FIND "${text}" "${message}" place)
-  if(place LESS 0)
-    message(FATAL_ERROR "${ARGN}: does not say '${message}': ${text}")
-  endif()
-endfunction()
 
 # Two errors of the translation and one of the accuracy for each of three methods; inliers of the one
 # that matches points.

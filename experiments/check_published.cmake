@@ -1,20 +1,10 @@
 # Real pairs: a folder laid out like the published data set, its clouds simulated. Rows have the kind
 # "real"; what is wrong with the folder is said.
+include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 file(REMOVE_RECURSE ${FOLDER})
 set(data "${FOLDER}/data")
 set(call ${EXPERIMENTS} run -o ${FOLDER}/result --quick --suite translation,accuracy
     --method default,icp-affine --jobs 2 --time-limit 8)
-
-function(expect expected message)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT code EQUAL expected)
-    message(FATAL_ERROR "${ARGN}: ends with ${code}, not ${expected}: ${text}")
-  endif()
-  string(FIND "${text}" "${message}" place)
-  if(place LESS 0)
-    message(FATAL_ERROR "${ARGN}: does not say '${message}': ${text}")
-  endif()
-endfunction()
 
 # `simulate` writes such a folder; its truth lies beside the one row.
 expect(0 "" ${AGRICOLMAP} simulate -o "${data}/Sugar Beet 10m" --crop sugar_beet_10m --seed 80001

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
@@ -72,16 +71,8 @@ Registration::Uncertainty uncertaintyOf(const Cloud& fixed, const pipeline::Regi
   uncertainty.expected_rms_m = inside.expected_rms;
   uncertainty.local_rms_m = inside.local_rms;
   uncertainty.height_deviation_m = inside.height_deviation;
-  // Between the shifts in the plane and the heading stands the height, which hangs on none of them.
-  constexpr std::array<std::size_t, 5> kPlace = {0, 1, 3, 4, 5};
-  constexpr std::size_t kSize = 6;
-  for (std::size_t i = 0; i < kPlace.size(); ++i) {
-    for (std::size_t k = 0; k < kPlace.size(); ++k) {
-      uncertainty.covariance[kSize * kPlace[i] + kPlace[k]] =
-          inside.covariance(static_cast<int>(i), static_cast<int>(k));
-    }
-  }
-  uncertainty.covariance[2 * kSize + 2] = inside.height_deviation * inside.height_deviation;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(uncertainty.covariance.data()) =
+      inside.covarianceWithHeight();
   const Eigen::Vector3d levelled(inside.centre.x(), inside.centre.y(),
                                  found.placed->heights.offset);
   uncertainty.centre_m = fixed.origin + found.maps.frames.levelled_from_fixed.inverse() * levelled;

@@ -22,7 +22,7 @@ struct Candidate {
 /// Where a candidate puts a point of the moving map.
 inline Eigen::Affine2d poseOf(const Candidate& candidate, const SearchSpace& space) {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
-  pose.linear() = linearOf(candidate.hypothesis, space.scale_axes);
+  pose.linear() = candidate.hypothesis.linear(space.scale_axes);
   pose.translation() = space.centre + candidate.shift - pose.linear() * space.centre;
   return pose;
 }

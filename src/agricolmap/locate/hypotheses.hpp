@@ -15,11 +15,6 @@ namespace agricolmap::locate {
 /// A heading error and two scale factors, relative to the initial guess.
 using Hypothesis = YawScales;
 
-/// Linear map R(yaw) · A · diag(s_x, s_y) · Aᵀ with A the directions of the scales.
-inline Eigen::Matrix2d linearOf(const Hypothesis& hypothesis, const Eigen::Matrix2d& scale_axes) {
-  return hypothesis.linear(scale_axes);
-}
-
 /// Mean squared displacement of the points of a rectangle about its middle, as a quadratic form in
 /// a small change of (yaw, log s_x, log s_y) [m²]. `axes`, `half_extent`: of the rectangle.
 Eigen::Matrix3d displacementMetric(const Eigen::Matrix2d& axes, const Eigen::Vector2d& half_extent,

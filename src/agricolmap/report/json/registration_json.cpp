@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
-#include <array>
 #include <cmath>
 
 #include "agricolmap/core/angles.hpp"
@@ -158,12 +157,7 @@ Json evidenceJson(const verdict::Evidence& evidence) {
 Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registration) {
   if (!registration.transform.has_value() || !registration.placed->uncertainty) return nullptr;
   const verdict::PoseUncertainty& uncertainty = *registration.placed->uncertainty;
-  constexpr std::array<int, 5> kPlace = {0, 1, 3, 4, 5};
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  for (int i = 0; i < 5; ++i) {
-    for (int j = 0; j < 5; ++j) covariance(kPlace[i], kPlace[j]) = uncertainty.covariance(i, j);
-  }
-  covariance(2, 2) = uncertainty.height_deviation * uncertainty.height_deviation;
+  const Eigen::Matrix<double, 6, 6> covariance = uncertainty.covarianceWithHeight();
   // The levelled frame is turned into the file's by a tilt alone.
   const Eigen::Affine3d file_from_levelled = registration.maps.frames.levelled_from_fixed.inverse();
   const Eigen::Vector3d centre =
