@@ -8,7 +8,7 @@ import pandas as pd
 TEXTS = ("suite", "settings", "case_name", "dataset", "kind", "told", "method", "status", "stages",
          "message", "source", "options")
 WHOLE = ("seed", "field", "threads")
-FLAGS = ("negative", "in_process", "accepted", "right", "right_in_plane")
+FLAGS = ("negative", "accepted", "right", "right_in_plane")
 # Empty where there is no such number.
 NUMBERS = (
     "setting", "guess_scale", "guess_translation", "guess_heading",
@@ -17,11 +17,13 @@ NUMBERS = (
     "expected_rms", "local_rms", "height_deviation", "overlap", "block_rms", "correlation",
     "attempts", "pose_mahalanobis2", "centre_mahalanobis2", "height_mahalanobis2",
     "matches", "matches_right", "matches_coherent", "rematches", "rematches_right",
-    "rematches_coherent", "fixed_points", "moving_points", "make_s", "wall_s", "run_s", "cpu_s",
-    "peak_mib", "idle_mib")
+    "rematches_coherent", "fixed_points", "moving_points", "make_s", "run_s", "cpu_s")
 COLUMNS = TEXTS + WHOLE + FLAGS + NUMBERS
+# Of rows of earlier sources, where a run could be a process of its own (`in_process` 0): its wall
+# time, reading included, which `cpu_s` then covers, too; its memory, and that before it read.
+EARLIER = ("in_process", "wall_s", "peak_mib", "idle_mib")
 KEY = ["suite", "settings", "case_name", "seed", "setting", "guess_scale", "method"]
-STATUSES = ("accepted", "rejected", "ambiguous", "failed", "timeout", "crashed", "skipped")
+STATUSES = ("accepted", "rejected", "ambiguous", "failed", "skipped")
 
 
 class RowError(Exception):
@@ -42,7 +44,7 @@ def _lines(path):
 
 def _check_header(path, header):
     missing = [name for name in COLUMNS if name not in header]
-    unknown = [name for name in header if name not in COLUMNS]
+    unknown = [name for name in header if name not in COLUMNS + EARLIER]
     if missing or unknown or len(set(header)) != len(header):
         raise RowError(
             f"{path}:1: these are not the columns of this version (experiments/runner/row.hpp): "
@@ -61,7 +63,7 @@ def _typed(path, frame):
         _first(path, frame, ~frame[column].isin(["0", "1"]), column, "neither 0 nor 1")
     _first(path, frame, ~frame["status"].isin(STATUSES), "status", f"none of {STATUSES}")
     numbers = {}
-    for column in WHOLE + NUMBERS:
+    for column in WHOLE + NUMBERS + EARLIER:
         values = pd.to_numeric(frame[column], errors="coerce")
         empty = frame[column] == ""
         _first(path, frame, (values.isna() & ~empty) | values.abs().eq(float("inf")), column,
@@ -85,7 +87,8 @@ def read(paths):
         for number, line in enumerate(lines[1:], start=2):
             if len(line) != len(lines[0]):
                 raise RowError(f"{path}:{number}: has {len(line)} fields, not {len(lines[0])}")
-        table = _typed(path, pd.DataFrame(lines[1:], columns=lines[0]))
+        table = _typed(path, pd.DataFrame(lines[1:], columns=lines[0]).reindex(
+            columns=COLUMNS + EARLIER, fill_value=""))
         tables.append(table.assign(place=[f"{path}:{i + 2}" for i in table.index]))
     rows = pd.concat(tables, ignore_index=True)
     double = rows.duplicated(KEY)

@@ -27,9 +27,6 @@ struct MethodInput {
   std::optional<Eigen::Affine3d> truth = std::nullopt;
   /// A match this near to the truth is right [m]: two cells of the paper's grid map.
   double right_match = 0.04;
-  /// After which a method that improves step by step hands back what it has [s]. Others run to
-  /// their end; whoever starts them may end them.
-  double time_limit = 600.0;
 };
 
 /// What a method found. No transform: it has no answer, and `why` says why.

@@ -21,7 +21,7 @@ void icpAffine(const MethodInput& input, MethodOutcome& outcome);
 void cpdAffine(const MethodInput& input, MethodOutcome& outcome);
 
 /// Go-ICP on the vegetation points (go_icp/branch_and_bound.hpp), then ICP on all moving points. Of
-/// the rigid motion the horizontal part counts. Hands back what it has at the time limit.
+/// the rigid motion the horizontal part counts. Hands back what it has after 51 s.
 void goIcp(const MethodInput& input, MethodOutcome& outcome);
 
 /// For every heading and pair of scales that the guess allows, in steps that move the ends of the

@@ -126,9 +126,9 @@ class Planner {
     if (found == nullptr) return false;
     if (found->options == planned.options) return true;
     throw InputError(
-        fmt::format("{}: has a row of {}, {}, seed {}, {} that comes from other options, limits or "
-                    "files (there "
-                    "{}, now {}), and must not be mixed with new rows; choose another --output",
+        fmt::format("{}: has a row of {}, {}, seed {}, {} that comes from other options or files "
+                    "(there {}, now {}), and must not be mixed with new rows; choose another "
+                    "--output",
                     table_.path().string(), planned.suite, planned.case_name, seed, planned.method,
                     found->options, planned.options));
   }
@@ -160,9 +160,8 @@ Row rowFor(const CampaignScope& scope, const Chain& chain, const AddedError* err
   row.method = chain.method->name;
   row.source = scope.source;
   row.options = fmt::format(
-      "{:016x}", hashText(fmt::format("{:016x} {} {:g} {:g} {:g} {:g}", chain.options, row.told,
-                                      row.guess_translation, row.guess_heading, row.guess_scale,
-                                      scope.time_limit)));
+      "{:016x}", hashText(fmt::format("{:016x} {} {:g} {:g} {:g}", chain.options, row.told,
+                                      row.guess_translation, row.guess_heading, row.guess_scale)));
   return row;
 }
 

@@ -16,7 +16,6 @@ struct CampaignScope {
   std::vector<Suite> suites = {};
   std::vector<Method> methods = {};
   std::string source = {};  ///< of the program
-  double time_limit = 0.0;  ///< of a child [s]; 0 in process
 };
 
 /// A curve of one method on one pair, worked off guess by guess, so that what comes next can depend

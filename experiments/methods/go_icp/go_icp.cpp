@@ -27,6 +27,7 @@ constexpr double kFieldCell = 0.05;   // of the distance field [m]; the article:
 constexpr double kFieldMargin = 0.5;  // around the fixed points [m]; our choice
 constexpr int kIcpIterations = 100;   // at most; our choice
 constexpr double kIcpStop = 1e-4;     // done when no point moves further [m]; our choice
+constexpr double kMostTime = 51.0;    // of the search [s], then what it has; our choice
 
 Points inSpace(const std::vector<map::VegetationPoint>& vegetation) {
   Points points;
@@ -101,12 +102,12 @@ Eigen::Isometry3d rigidIcp(const NearestPoints& fixed, const Points& moving,
 }
 
 GoIcpResult search(const DistanceField& field, const NearestPoints& fixed, const Points& moving,
-                   const PriorUncertainty& prior, double time_limit) {
+                   const PriorUncertainty& prior) {
   GoIcpSearch domain;
   domain.half_rotation =
       std::max(1e-3, std::min(prior.heading_deg, 180.0) * std::numbers::pi / 180.0);
   domain.half_translation = prior.translation;
-  const GoIcpSearcher searcher(field, moving, domain, time_limit);
+  const GoIcpSearcher searcher(field, moving, domain, kMostTime);
   return searcher.run([&](const GoIcpPose& start) {
     const Eigen::Isometry3d motion = rigidIcp(fixed, moving, start.motion());
     const Eigen::AngleAxisd turn(motion.linear());
@@ -121,7 +122,6 @@ GoIcpResult search(const DistanceField& field, const NearestPoints& fixed, const
 }  // namespace
 
 void goIcp(const MethodInput& input, MethodOutcome& outcome) {
-  const Stopwatch watch;
   const PeerMaps maps = makePeerMaps(input, outcome.times);
   const PriorUncertainty& prior = maps.space.uncertainty;
   const PeerPoints vegetation =
@@ -140,9 +140,8 @@ void goIcp(const MethodInput& input, MethodOutcome& outcome) {
   const NearestPoints near(fixed);
   const DistanceField field =
       outcome.times.run("field", [&] { return DistanceField(fixed, kFieldCell, kFieldMargin); });
-  const GoIcpResult result = outcome.times.run("search", [&] {
-    return search(field, near, few, prior, input.time_limit - watch.seconds());
-  });
+  const GoIcpResult result =
+      outcome.times.run("search", [&] { return search(field, near, few, prior); });
   const Eigen::Isometry3d motion =
       outcome.times.run("icp", [&] { return rigidIcp(near, all, result.pose.motion()); });
   outcome.accepted = result.proven;

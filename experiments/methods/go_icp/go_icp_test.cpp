@@ -73,7 +73,6 @@ PriorUncertainty nearPrior() {
 
 MethodOutcome runOn(const Method& method, const testing::GuessError& error, bool truth) {
   MethodInput input = testing::inputOf(testing::smallPair(), error, nearPrior());
-  input.time_limit = 5.0;
   if (truth) input.truth = testing::smallPair().best_affine;
   return method.run(input);
 }
