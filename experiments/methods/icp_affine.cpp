@@ -52,7 +52,7 @@ Sums pairUp(const NearestPoints& fixed, const std::vector<map::VegetationPoint>&
       const Eigen::Vector3d query(at.x(), at.y(), moving[i].height + pose.height);
       const auto found = fixed.nearest(query, most);
       if (!found) continue;
-      const Eigen::Vector3d& target = fixed.points()[found->index];
+      const Eigen::Vector3d& target = fixed.points()[*found];
       const Eigen::Vector2d arm = moving[i].position - middle;
       const Eigen::Vector3d from(arm.x(), arm.y(), 1.0);
       part.from += from * from.transpose();

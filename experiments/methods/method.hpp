@@ -46,7 +46,6 @@ double factOf(const MethodOutcome& outcome, const std::string& name);
 
 /// What whoever runs a method must know of it.
 struct Traits {
-  bool slow = false;            ///< takes minutes: comes last
   bool rigid = false;           ///< leaves the guess's scale error as it is
   bool matches_points = false;  ///< tells `matches`, and may tell `rematches`
   bool needs_guess = true;      ///< cannot search everywhere or for a unit

@@ -118,11 +118,9 @@ TEST(Traits, SayWhatEachMethodIs) {
   EXPECT_TRUE(makeMethod("paper").traits.needs_guess);
   EXPECT_TRUE(makeMethod("paper").traits.matches_points);
   EXPECT_TRUE(makeMethod("default:association=flow").traits.needs_guess);
-  EXPECT_TRUE(makeMethod("go-icp").traits.slow);
-  EXPECT_TRUE(makeMethod("go-icp").traits.rigid);
-  EXPECT_TRUE(makeMethod("go-icp-oracle-scale").traits.slow);
-  EXPECT_FALSE(makeMethod("go-icp-oracle-scale").traits.rigid);
   EXPECT_FALSE(makeMethod("icp-affine").traits.rigid);
+  const Method rigid = {"rigid", "no scale", {.rigid = true}, {}};
+  EXPECT_FALSE(withOracleScale(rigid).traits.rigid);
 }
 
 }  // namespace

@@ -20,10 +20,6 @@ void icpAffine(const MethodInput& input, MethodOutcome& outcome);
 /// the article.
 void cpdAffine(const MethodInput& input, MethodOutcome& outcome);
 
-/// Go-ICP on the vegetation points (go_icp/branch_and_bound.hpp), then ICP on all moving points. Of
-/// the rigid motion the horizontal part counts. Hands back what it has after 51 s.
-void goIcp(const MethodInput& input, MethodOutcome& outcome);
-
 /// For every heading and pair of scales that the guess allows, in steps that move the ends of the
 /// strip by a cell, the strip's Excess Green is correlated with the fixed map by FFT, normalised by
 /// the energy under the strip; a peak counts by its correlation times the root of the cells it
