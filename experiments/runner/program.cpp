@@ -13,7 +13,7 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "experiments/pairs/published_cases.hpp"
+#include "experiments/pairs/published.hpp"
 #include "experiments/runner/campaign.hpp"
 #include "revision.hpp"
 #include "support/exit_code.hpp"
