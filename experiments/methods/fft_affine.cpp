@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
-#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/keep_distinct.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/pose_distance.hpp"
 #include "agricolmap/locate/hypotheses.hpp"
 #include "agricolmap/refine/dense_refine.hpp"
 #include "experiments/methods/peer_maps.hpp"
@@ -114,18 +116,16 @@ std::vector<locate::Hypothesis> hypothesesOver(const PeerMaps& maps, const map::
 }
 
 std::vector<Candidate> distinct(std::vector<Candidate> found, const GridFrame& frame) {
+  std::erase_if(found, [](const Candidate& one) { return !(one.score > 0.0); });
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  std::vector<Candidate> result;
-  for (const Candidate& candidate : found) {
-    if (result.size() == kMost) break;
-    if (!(candidate.score > 0.0)) break;
-    const bool known = std::any_of(result.begin(), result.end(), [&](const Candidate& better) {
-      return cornerDistance(boxOf(frame), better.pose, candidate.pose) < kApart;
-    });
-    if (!known) result.push_back(candidate);
-  }
-  return result;
+  const auto corners = cornersOf(boxOf(frame));
+  return keepDistinct(
+      std::move(found),
+      [&](const Candidate& better, const Candidate& one) {
+        return poseDistance(corners, better.pose, one.pose) < kApart;
+      },
+      kMost);
 }
 
 /// Best placements, best first.

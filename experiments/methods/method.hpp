@@ -41,9 +41,6 @@ struct MethodOutcome {
   std::optional<StatedError> stated;  ///< how wrong it says that it may be
 };
 
-/// The fact of that name; NaN if the method told none.
-double factOf(const MethodOutcome& outcome, const std::string& name);
-
 /// What whoever runs a method must know of it.
 struct Traits {
   bool rigid = false;           ///< leaves the guess's scale error as it is

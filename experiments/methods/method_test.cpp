@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "agricolmap/core/error.hpp"
@@ -9,6 +10,14 @@
 
 namespace agricolmap::experiments {
 namespace {
+
+/// The fact of that name; NaN if the method told none.
+double factOf(const MethodOutcome& outcome, const std::string& name) {
+  for (const auto& [known, value] : outcome.facts) {
+    if (known == name) return value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 TEST(Methods, NamesAreUniqueAndAllCanBeMade) {
   const std::vector<std::string> names = methodNames();

@@ -27,12 +27,6 @@ inline constexpr std::array<const char*, kVerdictFeatures> kVerdictFeatureNames 
     "log_significance", "log_plane_error",    "log_height_error",
     "log_overlap"};
 
-/// Whether more of a feature speaks for the registration (1) or against it (−1).
-inline constexpr std::array<int, kVerdictFeatures> kVerdictFeatureSigns = {1, 1, 1, 1, -1, -1, 1};
-
-/// Of the features, the one that the plane has nothing to do with.
-inline constexpr std::size_t kHeightFeature = 5;
-
 /// The facts on scales on which a logistic regression is at home; each within bounds, so that no
 /// single one decides alone.
 VerdictFeatures verdictFeatures(const VerdictFacts& facts);
