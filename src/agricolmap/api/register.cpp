@@ -112,16 +112,6 @@ Registration publicResult(const Cloud& fixed, const pipeline::Registration& foun
   return result;
 }
 
-/// What was said about the clouds when they were read, and on the way.
-std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
-                                    const Monitor& monitor) {
-  std::vector<std::string> all = fixed.warnings;
-  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
-    all.insert(all.end(), more->begin(), more->end());
-  }
-  return all;
-}
-
 /// Refuses what was changed in vain, so that nobody believes it to have acted.
 void refuseIdle(const Options::Values& values) {
   pipeline::RegistrationOptions options = values.options;
@@ -194,7 +184,7 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
   for (const StageTime& time : monitor.times()) {
     result.times.push_back({std::string(nameOf(time.stage)), time.seconds});
   }
-  result.warnings = warningsOf(fixed, moving, monitor);
+  result.warnings = report::warningsOf(fixed, moving, monitor);
   result.record = std::move(record);
   return result;
 }

@@ -211,6 +211,15 @@ std::size_t threadsInForce(int asked) {
 
 }  // namespace
 
+std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
+                                    const Monitor& monitor) {
+  std::vector<std::string> all = fixed.warnings;
+  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
+    all.insert(all.end(), more->begin(), more->end());
+  }
+  return all;
+}
+
 nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
                                         const pipeline::Registration& registration,
                                         const Monitor& monitor,
@@ -220,11 +229,7 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
-  std::vector<std::string> warnings = fixed.warnings;
-  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
-    warnings.insert(warnings.end(), more->begin(), more->end());
-  }
-  json["warnings"] = stringsJson(warnings);
+  json["warnings"] = stringsJson(warningsOf(fixed, moving, monitor));
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
   json["transform"] = transformJson(fixed, moving, registration);
