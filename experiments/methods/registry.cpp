@@ -15,8 +15,7 @@ namespace {
 std::vector<Method> peers() {
   std::vector<Method> all = {
       {"icp-affine", "affine ICP on the vegetation points", {}, icpAffine},
-      {"cpd-affine", "affine coherent point drift on the vegetation points", {}, cpdAffine},
-      {"fft-affine", "exhaustive FFT correlation, then dense Gauss-Newton", {}, fftAffine}};
+      {"cpd-affine", "affine coherent point drift on the vegetation points", {}, cpdAffine}};
 #ifdef AGRICOLMAP_LIBRARY_PEERS
   const Traits matching = {.matches_points = true};
   const Method fpfh = {"fpfh-gicp",
