@@ -1,20 +1,10 @@
 # Real pairs: a folder laid out like the published data set, its clouds simulated. Rows have the kind
 # "real"; what is wrong with the folder is said.
+include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 file(REMOVE_RECURSE ${FOLDER})
 set(data "${FOLDER}/data")
 set(call ${EXPERIMENTS} run -o ${FOLDER}/result --quick --suite translation,accuracy
-    --method default,icp-affine --jobs 2 --time-limit 8)
-
-function(expect expected message)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT code EQUAL expected)
-    message(FATAL_ERROR "${ARGN}: ends with ${code}, not ${expected}: ${text}")
-  endif()
-  string(FIND "${text}" "${message}" place)
-  if(place LESS 0)
-    message(FATAL_ERROR "${ARGN}: does not say '${message}': ${text}")
-  endif()
-endfunction()
+    --method default,icp-affine --threads 1)
 
 # `simulate` writes such a folder; its truth lies beside the one row.
 expect(0 "" ${AGRICOLMAP} simulate -o "${data}/Sugar Beet 10m" --crop sugar_beet_10m --seed 80001
@@ -28,7 +18,7 @@ foreach(seed IN ITEMS 80001 80002)
   foreach(row IN ITEMS "translation,0.05,0" "translation,5,0" "accuracy,0.1,0.1")
     string(REPLACE "translation," "translation,final,${name},${name},real,${seed}," row ${row})
     string(REPLACE "accuracy," "accuracy,final,${name},${name},real,${seed}," row ${row})
-    if(NOT rows MATCHES "${row},[^\n]*,default,1,0,accepted,1,1,1,")
+    if(NOT rows MATCHES "${row},[^\n]*,default,1,accepted,1,1,1,")
       message(FATAL_ERROR "the default preset fails at ${row}: ${rows}")
     endif()
   endforeach()
@@ -44,12 +34,12 @@ endif()
 
 # Several folders, beside a simulated field.
 set(both ${EXPERIMENTS} run -o ${FOLDER}/both --quick --suite accuracy --method default
-    --settings develop)
+    --settings develop --threads 1)
 file(COPY "${data}/Sugar Beet 10m/" DESTINATION "${FOLDER}/more/North, 2nd")
 expect(0 "3 rows" ${both} --published ${data} --published ${FOLDER}/more --case sugar-beet-10m)
 file(READ ${FOLDER}/both/rows.csv rows)
 foreach(name IN ITEMS "sugar-beet-10m,simulated" "Sugar Beet 10m/ugv,real" "North- 2nd/ugv,real")
-  if(NOT rows MATCHES "${name},80001,0.1,0.1,[^\n]*,default,1,0,accepted,1,1,1,")
+  if(NOT rows MATCHES "${name},80001,0.1,0.1,[^\n]*,default,1,accepted,1,1,1,")
     message(FATAL_ERROR "the row of ${name} is missing: ${rows}")
   endif()
 endforeach()

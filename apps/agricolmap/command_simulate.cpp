@@ -11,7 +11,7 @@
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
-#include "agricolmap/report/pictures/pair_picture.hpp"
+#include "agricolmap/simulate/picture/pair_picture.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
@@ -72,11 +72,11 @@ void writeClouds(const io::StagedOutput& output, const simulate::SimulatedPair& 
 
 void writePicture(const io::StagedOutput& output, const simulate::SimulatedPair& pair,
                   const std::string& field, int seed) {
-  report::PairPictureInfo info;
+  simulate::PairPictureInfo info;
   info.title = fmt::format("Simulated pair: {}, seed {}", field, seed);
   if (!pair.overlaps) info.title += ", of different fields";
   info.same_field = pair.overlaps;
-  report::writePairPicture(output.path(kPicture), pair.uav, pair.ugv, pair.best_affine, info);
+  simulate::writePairPicture(output.path(kPicture), pair.uav, pair.ugv, pair.best_affine, info);
 }
 
 ExitCode runSimulate(SimulateArguments& arguments, const Globals& globals) {

@@ -17,15 +17,6 @@ def _errors(rows):
             "rms_median": right.rms.median(), "plane_median": right.rms_to_best_affine.median()}
 
 
-def _cell(line):
-    """e_t / e_R / e_s as the paper writes them, our RMS and how many pairs they are from."""
-    of = f"({line.successes} of {line.runs})" + (" *" if line.skipped else "")
-    ours = f"fail {of}" if line.successes == 0 else (
-        f"{line.e_t_mean:.3f} m / {line.e_r_mean_deg:.2f}° / {100 * line.e_s_mean:.1f} %; "
-        f"plane {1000 * line.plane_median:.0f} mm {of}")
-    return ours + (f"; paper: {line.paper_real_data}" if line.paper_real_data else "")
-
-
 def _plot(rows):
     right = rows[rows.success]
     datasets = list(dict.fromkeys(right.dataset))
@@ -57,15 +48,7 @@ def section(rows):
     table["paper_real_data"] = [
         paper.text("err_statistic", line.method, line.dataset, line.guess_scale)
         for line in table.itertuples()]
-    cells = table.assign(cell=table.apply(_cell, axis=1),
-                         scale=[f"{100 * scale:.0f} %" for scale in table.guess_scale])
-    tables = [Table("accuracy", table)]
-    for dataset, part in cells.groupby("dataset", sort=False):
-        shown = part.pivot(index="method", columns="scale", values="cell")
-        shown = shown.loc[in_order(part.method), list(dict.fromkeys(part.scale))].fillna("–")
-        tables.append(Table("", None, shown.reset_index(),
-                            title=f"{dataset} ({part.kind.iloc[0]})"))
-    return Section("accuracy", {"accuracy-methods": _plot(rows)}, tables)
+    return Section("accuracy", {"accuracy-methods": _plot(rows)}, [Table("accuracy", table)])
 
 
 def _matches(rows):

@@ -48,7 +48,7 @@ def markdown(frame):
 def tables_of(made):
     """By name, those that documents may have."""
     return {table.name: markdown(table.shown) for section in made for table in section.tables
-            if table.name and table.shown is not None}
+            if table.shown is not None}
 
 
 def _block(folder, name, table):
@@ -75,8 +75,7 @@ def _page(made, svgs, title, text):
             "title": words["title"], "text": f"{section.facts} {words['text']}",
             "plots": [{"caption": TEXTS["plots"][name], "data": "data:image/svg+xml;base64,"
                        + base64.b64encode(svgs[name].encode()).decode()} for name in section.plots],
-            "tables": [{"caption": table.title or TEXTS["tables"][table.name],
-                        "csv": table.name if table.full is not None else "",
+            "tables": [{"caption": TEXTS["tables"][table.name], "csv": table.name,
                         "long": _is_long(table.shown),
                         "html": Markup(table.shown.rename_axis(columns=None).to_html(
                             index=False, border=0))}
@@ -98,8 +97,7 @@ def write(rows, folder, title):
         (folder / f"{name}.svg").write_text(svg, encoding="utf-8")
     for section in made:
         for table in section.tables:
-            if table.full is not None:
-                table.full.to_csv(folder / f"{table.name}.csv", index=False, float_format="%.5g")
+            table.full.to_csv(folder / f"{table.name}.csv", index=False, float_format="%.5g")
     shown = tables_of(made)
     (folder / "tables.md").write_text("\n\n".join(
         _block(folder.name, name, text) for name, text in shown.items()) + "\n", encoding="utf-8")

@@ -8,22 +8,24 @@ import pandas as pd
 TEXTS = ("suite", "settings", "case_name", "dataset", "kind", "told", "method", "status", "stages",
          "message", "source", "options")
 WHOLE = ("seed", "field", "threads")
-FLAGS = ("negative", "in_process", "accepted", "right", "right_in_plane")
+FLAGS = ("negative", "accepted", "right", "right_in_plane")
 # Empty where there is no such number.
 NUMBERS = (
     "setting", "guess_scale", "guess_translation", "guess_heading",
     "rms", "rms_horizontal", "rms_vertical", "worst", "rms_to_best_affine", "e_t", "e_r", "e_s",
     "probability", "plane_probability", "place_probability", "uniqueness", "significance", "decoy",
-    "agreeing", "blocks", "expected_rms", "systematic_rms", "local_rms", "height_deviation", "overlap", "block_rms", "correlation",
-    "attempts", "pose_mahalanobis2", "centre_mahalanobis2", "height_mahalanobis2",
+    "agreeing", "blocks", "expected_rms", "systematic_rms", "local_rms", "height_deviation",
+    "overlap", "block_rms", "correlation", "attempts", "pose_mahalanobis2", "centre_mahalanobis2", "height_mahalanobis2",
     "matches", "matches_right", "matches_coherent", "rematches", "rematches_right",
-    "rematches_coherent", "fixed_points", "moving_points", "make_s", "wall_s", "run_s", "cpu_s",
-    "peak_mib", "idle_mib")
+    "rematches_coherent", "fixed_points", "moving_points", "make_s", "run_s", "cpu_s")
 COLUMNS = TEXTS + WHOLE + FLAGS + NUMBERS
+# Of rows of earlier sources, where a run could be a process of its own (`in_process` 0): its wall
+# time, reading included, which `cpu_s` then covers, too; its memory, and that before it read.
+EARLIER = ("in_process", "wall_s", "peak_mib", "idle_mib")
 # Rows that documents quote may be older than these.
 LATER = ("place_probability", "decoy", "systematic_rms")
 KEY = ["suite", "settings", "case_name", "seed", "setting", "guess_scale", "method"]
-STATUSES = ("accepted", "rejected", "ambiguous", "failed", "timeout", "crashed", "skipped")
+STATUSES = ("accepted", "rejected", "ambiguous", "failed", "skipped")
 
 
 class RowError(Exception):
@@ -44,7 +46,7 @@ def _lines(path):
 
 def _check_header(path, header):
     missing = [name for name in COLUMNS if name not in header and name not in LATER]
-    unknown = [name for name in header if name not in COLUMNS]
+    unknown = [name for name in header if name not in COLUMNS + EARLIER]
     if missing or unknown or len(set(header)) != len(header):
         raise RowError(
             f"{path}:1: these are not the columns of this version (experiments/runner/row.hpp): "
@@ -63,7 +65,7 @@ def _typed(path, frame):
         _first(path, frame, ~frame[column].isin(["0", "1"]), column, "neither 0 nor 1")
     _first(path, frame, ~frame["status"].isin(STATUSES), "status", f"none of {STATUSES}")
     numbers = {}
-    for column in WHOLE + NUMBERS:
+    for column in WHOLE + NUMBERS + EARLIER:
         values = pd.to_numeric(frame[column], errors="coerce")
         empty = frame[column] == ""
         _first(path, frame, (values.isna() & ~empty) | values.abs().eq(float("inf")), column,
@@ -87,11 +89,8 @@ def read(paths):
         for number, line in enumerate(lines[1:], start=2):
             if len(line) != len(lines[0]):
                 raise RowError(f"{path}:{number}: has {len(line)} fields, not {len(lines[0])}")
-        table = pd.DataFrame(lines[1:], columns=lines[0])
-        for column in LATER:
-            if column not in table:
-                table[column] = ""
-        table = _typed(path, table)
+        table = _typed(path, pd.DataFrame(lines[1:], columns=lines[0]).reindex(
+            columns=COLUMNS + EARLIER, fill_value=""))
         tables.append(table.assign(place=[f"{path}:{i + 2}" for i in table.index]))
     rows = pd.concat(tables, ignore_index=True)
     double = rows.duplicated(KEY)

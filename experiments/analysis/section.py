@@ -12,11 +12,10 @@ TEXTS = tomllib.loads(Path(__file__).with_name("texts.toml").read_text(encoding=
 
 @dataclass(frozen=True)
 class Table:
-    """`full` goes into NAME.csv; `shown`, texts, into the page and into documents."""
+    """`full` goes into NAME.csv; `shown`, texts, if any, into the page and into documents."""
     name: str
-    full: pd.DataFrame | None = None
+    full: pd.DataFrame
     shown: pd.DataFrame | None = None
-    title: str = ""  # empty: that of texts.toml
 
 
 @dataclass(frozen=True)

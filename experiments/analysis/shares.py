@@ -41,7 +41,6 @@ def counts(rows):
         "wrong_accepted": int((rows.accepted & ~rows.right).sum()),
         "not_accepted": int((~rows.accepted).sum()),
         "skipped": int((rows.status == "skipped").sum()),
-        "timeouts": int((rows.status == "timeout").sum()),
     }
 
 

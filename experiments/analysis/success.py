@@ -70,28 +70,6 @@ def _plot(rows, suite):
     return figure
 
 
-def _cell(line):
-    marks = (" *" if line.skipped else "") + (" †" if line.timeouts else "")
-    return f"{line.success:.2f} ({line.success_low:.2f}–{line.success_high:.2f}){marks}"
-
-
-def _tables(rows):
-    """The full one by data set; those of the page over all data sets of a kind."""
-    by = ["suite", "kind", "dataset", "guess_scale", "setting", "method"]
-    tables = [Table("success", by_group(rows, by, counts))]
-    pooled = by_group(rows, [one for one in by if one != "dataset"], counts)
-    pooled = pooled.assign(
-        cell=pooled.apply(_cell, axis=1),
-        scale=["" if suite in ("accuracy", "joint") else f"{100 * scale:.0f} %"
-               for suite, scale in zip(pooled.suite, pooled.guess_scale)])
-    for (suite, kind), part in pooled.groupby(["suite", "kind"], sort=False):
-        shown = part.pivot(index=["method", "scale"], columns="setting", values="cell")
-        shown = shown.reindex(in_order(part.method), level=0).fillna("–")
-        shown.columns = [f"{setting:g}" for setting in shown.columns]
-        tables.append(Table("", None, shown.reset_index(), title=f"Success, {suite}, {kind}"))
-    return tables
-
-
 def _overview(rows):
     """A line for each method, over all its runs of these suites."""
     inside = rows.setting <= rows.suite.map(_PAPER_RANGE).fillna(float("inf"))
@@ -151,4 +129,7 @@ def section(rows):
         return None
     plots = {f"success-{suite}": _plot(rows, suite) for suite in _AXES}
     plots = {name: figure for name, figure in plots.items() if figure}
-    return Section("success", plots, [_overview(rows), *_contests(rows), *_tables(rows)])
+    each = by_group(
+        rows, ["suite", "kind", "dataset", "guess_scale", "setting", "method"], counts)
+    return Section("success", plots,
+                   [_overview(rows), *_contests(rows), Table("success", each)])

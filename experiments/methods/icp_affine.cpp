@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/pose_distance.hpp"
 #include "experiments/methods/nearest_points.hpp"
 #include "experiments/methods/peer_maps.hpp"
 #include "experiments/methods/peers.hpp"
@@ -52,7 +53,7 @@ Sums pairUp(const NearestPoints& fixed, const std::vector<map::VegetationPoint>&
       const Eigen::Vector3d query(at.x(), at.y(), moving[i].height + pose.height);
       const auto found = fixed.nearest(query, most);
       if (!found) continue;
-      const Eigen::Vector3d& target = fixed.points()[found->index];
+      const Eigen::Vector3d& target = fixed.points()[*found];
       const Eigen::Vector2d arm = moving[i].position - middle;
       const Eigen::Vector3d from(arm.x(), arm.y(), 1.0);
       part.from += from * from.transpose();
@@ -90,7 +91,7 @@ std::string iterate(const PeerPoints& points, Pose& pose, bool& converged) {
     next.plane.translation() = fit.col(2) - fit.leftCols<2>() * middle;
     next.height = sums.height / sums.pairs;
     if (!(next.plane.linear().determinant() > 0.0)) return "the map collapsed";
-    converged = cornerDistance(box, next.plane, pose.plane) < kStop;
+    converged = poseDistance(cornersOf(box), next.plane, pose.plane) < kStop;
     pose = next;
   }
   return {};

@@ -26,7 +26,7 @@ TEST(NearestPoints, FindsWhatLookingAtAllOfThemFinds) {
     const auto found = index.nearest(query, 0.4);
     EXPECT_EQ(found.has_value(), (points[best] - query).norm() <= 0.4);
     if (found) {
-      EXPECT_EQ(found->index, best);
+      EXPECT_EQ(*found, best);
     }
   }
   EXPECT_FALSE(NearestPoints({}).nearest(Eigen::Vector3d::Zero(), 1.0).has_value());

@@ -1,6 +1,5 @@
 #include "experiments/methods/method.hpp"
 
-#include <limits>
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
@@ -21,13 +20,6 @@ Eigen::Affine3d withTrueScales(const Eigen::Affine3d& guess, const Eigen::Affine
 }
 
 }  // namespace
-
-double factOf(const MethodOutcome& outcome, const std::string& name) {
-  for (const auto& [known, value] : outcome.facts) {
-    if (known == name) return value;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
 
 MethodOutcome Method::run(const MethodInput& input) const {
   MethodOutcome outcome;

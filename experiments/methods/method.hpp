@@ -27,9 +27,6 @@ struct MethodInput {
   std::optional<Eigen::Affine3d> truth = std::nullopt;
   /// A match this near to the truth is right [m]: two cells of the paper's grid map.
   double right_match = 0.04;
-  /// After which a method that improves step by step hands back what it has [s]. Others run to
-  /// their end; whoever starts them may end them.
-  double time_limit = 600.0;
 };
 
 /// What a method found. No transform: it has no answer, and `why` says why.
@@ -44,12 +41,8 @@ struct MethodOutcome {
   std::optional<StatedError> stated;  ///< how wrong it says that it may be
 };
 
-/// The fact of that name; NaN if the method told none.
-double factOf(const MethodOutcome& outcome, const std::string& name);
-
 /// What whoever runs a method must know of it.
 struct Traits {
-  bool slow = false;            ///< takes minutes: comes last
   bool rigid = false;           ///< leaves the guess's scale error as it is
   bool matches_points = false;  ///< tells `matches`, and may tell `rematches`
   bool needs_guess = true;      ///< cannot search everywhere or for a unit

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "agricolmap/core/error.hpp"
@@ -9,6 +10,14 @@
 
 namespace agricolmap::experiments {
 namespace {
+
+/// The fact of that name; NaN if the method told none.
+double factOf(const MethodOutcome& outcome, const std::string& name) {
+  for (const auto& [known, value] : outcome.facts) {
+    if (known == name) return value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 TEST(Methods, NamesAreUniqueAndAllCanBeMade) {
   const std::vector<std::string> names = methodNames();
@@ -118,11 +127,9 @@ TEST(Traits, SayWhatEachMethodIs) {
   EXPECT_TRUE(makeMethod("paper").traits.needs_guess);
   EXPECT_TRUE(makeMethod("paper").traits.matches_points);
   EXPECT_TRUE(makeMethod("default:association=flow").traits.needs_guess);
-  EXPECT_TRUE(makeMethod("go-icp").traits.slow);
-  EXPECT_TRUE(makeMethod("go-icp").traits.rigid);
-  EXPECT_TRUE(makeMethod("go-icp-oracle-scale").traits.slow);
-  EXPECT_FALSE(makeMethod("go-icp-oracle-scale").traits.rigid);
   EXPECT_FALSE(makeMethod("icp-affine").traits.rigid);
+  const Method rigid = {"rigid", "no scale", {.rigid = true}, {}};
+  EXPECT_FALSE(withOracleScale(rigid).traits.rigid);
 }
 
 }  // namespace

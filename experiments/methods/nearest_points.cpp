@@ -1,6 +1,5 @@
 #include "experiments/methods/nearest_points.hpp"
 
-#include <cmath>
 #include <nanoflann.hpp>
 #include <utility>
 
@@ -37,13 +36,12 @@ NearestPoints::NearestPoints(std::vector<Eigen::Vector3d> points)
 
 NearestPoints::~NearestPoints() = default;
 
-std::optional<NearestPoints::Neighbour> NearestPoints::nearest(const Eigen::Vector3d& query,
-                                                               double most) const {
+std::optional<std::size_t> NearestPoints::nearest(const Eigen::Vector3d& query, double most) const {
   std::size_t index = 0;
   double distance2 = 0.0;
   if (tree_->index.knnSearch(query.data(), 1, &index, &distance2) == 0) return std::nullopt;
   if (!(distance2 <= most * most)) return std::nullopt;
-  return Neighbour{index, std::sqrt(distance2)};
+  return index;
 }
 
 const std::vector<Eigen::Vector3d>& NearestPoints::points() const { return tree_->data.all; }

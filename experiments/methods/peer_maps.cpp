@@ -96,16 +96,6 @@ void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen
       maps.frames.levelled_from_moving * Eigen::Translation3d(-input.moving.origin);
 }
 
-double cornerDistance(const map::Box2& box, const Eigen::Affine2d& a, const Eigen::Affine2d& b) {
-  double farthest = 0.0;
-  for (const auto which :
-       {map::Box2::BottomLeft, map::Box2::BottomRight, map::Box2::TopLeft, map::Box2::TopRight}) {
-    const Eigen::Vector2d corner = box.corner(which);
-    farthest = std::max(farthest, (a * corner - b * corner).norm());
-  }
-  return farthest;
-}
-
 void addMatches(const std::string& name, const pipeline::PairFrames& frames,
                 const MethodInput& input, const std::vector<Match>& matches, double coherent,
                 MethodOutcome& outcome) {

@@ -47,9 +47,6 @@ void setPlanePose(const PeerMaps& maps, const MethodInput& input, const Eigen::A
 void setLevelledPose(const PeerMaps& maps, const MethodInput& input, const Eigen::Affine3d& pose,
                      MethodOutcome& outcome);
 
-/// Largest distance between where two poses put a corner of the box [m].
-double cornerDistance(const map::Box2& box, const Eigen::Affine2d& a, const Eigen::Affine2d& b);
-
 /// Tells the counts of matches in the levelled frames as the facts `name`, `name_right` (where the
 /// truth is known) and `name_coherent`.
 void addMatches(const std::string& name, const pipeline::PairFrames& frames,

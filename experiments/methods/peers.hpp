@@ -20,17 +20,6 @@ void icpAffine(const MethodInput& input, MethodOutcome& outcome);
 /// the article.
 void cpdAffine(const MethodInput& input, MethodOutcome& outcome);
 
-/// Go-ICP on the vegetation points (go_icp/branch_and_bound.hpp), then ICP on all moving points. Of
-/// the rigid motion the horizontal part counts. Hands back what it has at the time limit.
-void goIcp(const MethodInput& input, MethodOutcome& outcome);
-
-/// For every heading and pair of scales that the guess allows, in steps that move the ends of the
-/// strip by a cell, the strip's Excess Green is correlated with the fixed map by FFT, normalised by
-/// the energy under the strip; a peak counts by its correlation times the root of the cells it
-/// rests on. The best few are refined on the maps through 12 and 6 cm, the one that then correlates
-/// best through 4 and 2 cm. No whitening, no verdict: what the product's default adds is left out.
-void fftAffine(const MethodInput& input, MethodOutcome& outcome);
-
 /// The paper's chain with sparse features in place of the flow (Sec. V-B): detection, description
 /// and matching on the Excess Green map; vote, affine and CPD unchanged. Features of SURF, of ORB,
 /// and of FAST with BRIEF.

@@ -13,15 +13,9 @@ namespace {
 /// In the order in which they are listed. Those of OpenCV, dlib and Open3D only where these are
 /// built in.
 std::vector<Method> peers() {
-  const Traits slow_and_rigid = {.slow = true, .rigid = true};
-  const Method go_icp = {"go-icp", "rigid branch and bound on the vegetation points",
-                         slow_and_rigid, goIcp};
   std::vector<Method> all = {
       {"icp-affine", "affine ICP on the vegetation points", {}, icpAffine},
-      {"cpd-affine", "affine coherent point drift on the vegetation points", {}, cpdAffine},
-      go_icp,
-      withOracleScale(go_icp),
-      {"fft-affine", "exhaustive FFT correlation, then dense Gauss-Newton", {}, fftAffine}};
+      {"cpd-affine", "affine coherent point drift on the vegetation points", {}, cpdAffine}};
 #ifdef AGRICOLMAP_LIBRARY_PEERS
   const Traits matching = {.matches_points = true};
   const Method fpfh = {"fpfh-gicp",

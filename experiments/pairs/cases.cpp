@@ -9,6 +9,7 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/random.hpp"
 #include "experiments/pairs/hash.hpp"
+#include "experiments/pairs/published.hpp"
 
 namespace agricolmap::experiments {
 namespace {

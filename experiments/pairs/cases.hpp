@@ -2,6 +2,8 @@
 // what methods are told about the initial guess.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +11,6 @@
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 #include "experiments/pairs/dates.hpp"
-#include "experiments/pairs/published.hpp"
 #include "experiments/pairs/slip.hpp"
 
 namespace agricolmap::experiments {
@@ -32,6 +33,15 @@ struct OptionRange {
   double low;
   double high;
   std::vector<double> values = {};  ///< one of these instead of low…high
+};
+
+/// Two real clouds: a drone's and a row of a robot in it.
+struct PublishedPair {
+  std::filesystem::path fixed_cloud;
+  std::filesystem::path moving_cloud;
+  std::optional<std::filesystem::path> truth_file;
+  /// What that file says, moving file → fixed file coordinates [m].
+  std::optional<Eigen::Affine3d> true_fixed_from_moving;
 };
 
 struct Case {

@@ -72,10 +72,8 @@ class Planner {
     std::vector<Job> jobs;
     for (int seed = first; seed < end;) {
       const int next = std::min(end, (seed / together_ + 1) * together_);
-      for (const bool slow : {false, true}) {
-        std::vector<Job> round = roundOf(seed, next, slow);
-        std::move(round.begin(), round.end(), std::back_inserter(jobs));
-      }
+      std::vector<Job> block = jobsOf(seed, next);
+      std::move(block.begin(), block.end(), std::back_inserter(jobs));
       seed = next;
     }
     return jobs;
@@ -83,19 +81,19 @@ class Planner {
 
  private:
   /// The jobs of seeds from `begin` to before `end`.
-  std::vector<Job> roundOf(int begin, int end, bool slow) {
-    std::vector<Job> round;
+  std::vector<Job> jobsOf(int begin, int end) {
+    std::vector<Job> jobs;
     for (const Suite& suite : scope_.suites) {
       for (const Case& chosen : suite.cases) {
         for (int seed = begin; seed < end; ++seed) {
           if (!has(suite, chosen, seed)) continue;
-          Job job = jobLeft(suite, chosen, seed, slow);
-          if (job.runs > 0) round.push_back(std::move(job));
+          Job job = jobLeft(suite, chosen, seed);
+          if (job.runs > 0) jobs.push_back(std::move(job));
         }
       }
     }
-    groupByFlight(round);
-    return round;
+    groupByFlight(jobs);
+    return jobs;
   }
 
   static bool has(const Suite& suite, const Case& chosen, int seed) {
@@ -104,10 +102,10 @@ class Planner {
     return number >= 0 && number < suite.pairs && within;
   }
 
-  Job jobLeft(const Suite& suite, const Case& chosen, int seed, bool slow) {
+  Job jobLeft(const Suite& suite, const Case& chosen, int seed) {
     Job job{&chosen, seed, {}};
     for (const Method& method : scope_.methods) {
-      if (method.traits.slow != slow || !takesPart(suite, chosen, method.traits)) continue;
+      if (!takesPart(suite, chosen, method.traits)) continue;
       const std::uint64_t options = hashText(texts_[&chosen] + method.options);
       for (Chain& chain : chainsOf(suite, chosen, method, options)) {
         const auto left =
@@ -126,9 +124,9 @@ class Planner {
     if (found == nullptr) return false;
     if (found->options == planned.options) return true;
     throw InputError(
-        fmt::format("{}: has a row of {}, {}, seed {}, {} that comes from other options, limits or "
-                    "files (there "
-                    "{}, now {}), and must not be mixed with new rows; choose another --output",
+        fmt::format("{}: has a row of {}, {}, seed {}, {} that comes from other options or files "
+                    "(there {}, now {}), and must not be mixed with new rows; choose another "
+                    "--output",
                     table_.path().string(), planned.suite, planned.case_name, seed, planned.method,
                     found->options, planned.options));
   }
@@ -160,9 +158,8 @@ Row rowFor(const CampaignScope& scope, const Chain& chain, const AddedError* err
   row.method = chain.method->name;
   row.source = scope.source;
   row.options = fmt::format(
-      "{:016x}", hashText(fmt::format("{:016x} {} {:g} {:g} {:g} {:g}", chain.options, row.told,
-                                      row.guess_translation, row.guess_heading, row.guess_scale,
-                                      scope.time_limit)));
+      "{:016x}", hashText(fmt::format("{:016x} {} {:g} {:g} {:g}", chain.options, row.told,
+                                      row.guess_translation, row.guess_heading, row.guess_scale)));
   return row;
 }
 

@@ -16,7 +16,6 @@ struct CampaignScope {
   std::vector<Suite> suites = {};
   std::vector<Method> methods = {};
   std::string source = {};  ///< of the program
-  double time_limit = 0.0;  ///< of a child [s]; 0 in process
 };
 
 /// A curve of one method on one pair, worked off guess by guess, so that what comes next can depend
@@ -44,9 +43,9 @@ Row rowFor(const CampaignScope& scope, const Chain& chain, const AddedError* err
 /// What is told of the guess.
 PriorUncertainty toldFor(const Chain& chain, const AddedError* error);
 
-/// All jobs, block of seeds by block of seeds, so that an interrupted campaign has all cases: slow
-/// methods last in a block, pairs of one drone's view together, so that it is made once. Throws
-/// InputError when the table has a row of one of the runs from other options.
+/// All jobs, block of seeds by block of seeds, so that an interrupted campaign has all cases; in a
+/// block pairs of one drone's view together, so that it is made once. Throws InputError when the
+/// table has a row of one of the runs from other options.
 std::vector<Job> planCampaign(const CampaignScope& scope, const RowTable& table);
 
 /// Whether the method, a rigid one, leaves the whole scale error of the guess, and that alone is

@@ -4,18 +4,17 @@
 #include <fnmatch.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "experiments/pairs/published_cases.hpp"
+#include "experiments/pairs/published.hpp"
 #include "experiments/runner/campaign.hpp"
-#include "experiments/runner/register_one.hpp"
 #include "revision.hpp"
 #include "support/exit_code.hpp"
 #include "support/signal_stop.hpp"
@@ -34,14 +33,9 @@ struct Arguments {
   int first_seed = -1;
   bool uniform = false;
   bool quick = false;
-  bool in_process = false;
-  bool children = false;
-  double time_limit = 0.0;  ///< 0: nobody said
   double stop_after = 0.0;
-  int jobs = 1;
-  int threads = -1;
+  int threads = 0;
   std::string shared = "../shared";
-  std::string scratch;
 };
 
 bool matchesAny(const std::string& name, const std::vector<std::string>& patterns) {
@@ -131,33 +125,11 @@ std::vector<Method> methodsOf(const Arguments& arguments, const std::vector<Suit
   return methods;
 }
 
-CampaignOptions optionsOf(const Arguments& arguments, const std::vector<Suite>& suites) {
-  CampaignOptions options;
-  options.runs.in_process =
-      arguments.in_process || (!arguments.children && suites.front().curves.empty());
-  options.runs.threads = std::max(arguments.threads, 1);
-  if (arguments.time_limit > 0.0) options.runs.time_limit = arguments.time_limit;
-  options.runs.program = std::filesystem::read_symlink("/proc/self/exe");
-  if (options.runs.in_process && (arguments.jobs > 1 || arguments.time_limit > 0.0)) {
-    throw UsageError(
-        "--jobs and --time-limit are for children; runs in this process come one after another and "
-        "to their end; give --children");
-  }
-  options.jobs = arguments.jobs;
-  options.stop_after = arguments.stop_after;
-  options.scratch =
-      std::filesystem::path(arguments.scratch.empty() ? arguments.output : arguments.scratch) /
-      fmt::format("scratch_{}", ::getpid());
-  return options;
-}
-
 void runAll(const Arguments& arguments) {
   PairMaker maker(arguments.shared);
   CampaignScope scope{.suites = suitesOf(arguments), .source = kRevision};
   scope.methods = methodsOf(arguments, scope.suites);
-  const CampaignOptions options = optionsOf(arguments, scope.suites);
-  if (!options.runs.in_process) scope.time_limit = options.runs.time_limit;
-  const ThreadLimit limit(options.runs.in_process ? std::max(arguments.threads, 0) : options.jobs);
+  const ThreadLimit limit(arguments.threads);
   chooseCases(arguments, maker, scope.suites);
   std::error_code error;
   std::filesystem::create_directories(arguments.output, error);
@@ -166,7 +138,7 @@ void runAll(const Arguments& arguments) {
   }
   RowTable table(std::filesystem::path(arguments.output) / "rows.csv", scope.source);
   const std::size_t before = table.rows().size();
-  const bool complete = runCampaign(scope, options, maker, table);
+  const bool complete = runCampaign(scope, arguments.stop_after, maker, table);
   fmt::print("{}: {} rows, {} of them new{}\n", table.path().string(), table.rows().size(),
              table.rows().size() - before,
              complete ? "" : "; stopped early, the same command goes on from here");
@@ -220,27 +192,16 @@ void addRunFlags(CLI::App& verb, Arguments& arguments) {
       ->check(CLI::Range(0, 1000000000));
   verb.add_flag("--uniform", arguments.uniform,
                 "Errors of the cases' own guesses from zero to their limits, not always as large");
-  auto* here = verb.add_flag("--in-process", arguments.in_process,
-                             "Methods run in this process [unless methods are compared]");
-  verb.add_flag("--children", arguments.children, "Each run is a process of its own")
-      ->excludes(here);
-  verb.add_option("--time-limit", arguments.time_limit,
-                  "A child is ended after so much computing [60 s]")
-      ->check(CLI::Range(0.5, 1e5));
-  verb.add_option("--jobs", arguments.jobs, "Children at a time [1]")->check(CLI::Range(1, 1024));
-  verb.add_option("--threads", arguments.threads,
-                  "Threads of a run, 0: all cores [in this process 0, of a child 1]")
+  verb.add_option("--threads", arguments.threads, "Threads of a run, 0: all cores [0]")
       ->check(CLI::Range(0, 1024));
   verb.add_option("--stop-after", arguments.stop_after, "Begin no pair after this time [s]");
   verb.add_option("--shared", arguments.shared, "Folder with the real data [../shared]");
-  verb.add_option("--scratch", arguments.scratch, "Folder for children's clouds [--output]");
   verb.footer(
       "An interrupted run goes on where it stopped when called again. Seeds 31 and 51 to 53\n"
       "served to tune the peers.");
 }
 
 int run(int argc, char** argv) {
-  const double idle_mib = peakMemory();
   Arguments arguments;
   std::string what;
   std::function<void()> action;
@@ -256,7 +217,6 @@ int run(int argc, char** argv) {
   CLI::App* runner = app.add_subcommand("run", "Run methods on the pairs of suites");
   addRunFlags(*runner, arguments);
   runner->callback([&] { action = [&] { runAll(arguments); }; });
-  addRegisterOne(app, idle_mib, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -40,13 +40,12 @@ struct Row {
   /// How wrong the method is told that it may be: `T_M;HEADING_DEG;SCALE_%`, or `none` for no
   /// guess; with `;unit` where the file's unit is unknown.
   std::string told;
-  std::string method;       ///< preset, preset with options (`default:grid.cell=0.03`), or peer
-  int threads = 0;          ///< that it might use
-  bool in_process = false;  ///< else as a child, whose wall time and memory these are
+  std::string method;  ///< preset, preset with options (`default:grid.cell=0.03`), or peer
+  int threads = 0;     ///< that it might use
 
   // What came of it.
   /// accepted; rejected or ambiguous (a transform that the method does not stand by); failed (no
-  /// transform); timeout; crashed; skipped (not run: cannot be right, see `message`).
+  /// transform); skipped (not run: cannot be right, see `message`).
   std::string status;
   bool accepted = false;        ///< the method stands by its transform
   bool right = false;           ///< within the paper's limits: RMS and e_t 5 cm, e_r 0.1, e_s 0.025
@@ -100,13 +99,10 @@ struct Row {
   // What it cost.
   double fixed_points = kNotKnown;
   double moving_points = kNotKnown;
-  double make_s = kNotKnown;    ///< making the pair, once for all runs on it
-  double wall_s = kNotKnown;    ///< of the child, reading included; in process as run_s
-  double run_s = kNotKnown;     ///< the registration alone
-  double cpu_s = kNotKnown;     ///< of all threads, as wall_s
-  double peak_mib = kNotKnown;  ///< most memory of the child; empty in process
-  double idle_mib = kNotKnown;  ///< of the child before it read anything
-  std::string stages;           ///< `name=seconds` parted by semicolons
+  double make_s = kNotKnown;  ///< making the pair, once for all runs on it
+  double run_s = kNotKnown;   ///< the registration
+  double cpu_s = kNotKnown;   ///< of all threads
+  std::string stages;         ///< `name=seconds` parted by semicolons
 
   std::string message;  ///< why there is no accepted transform
   std::string source;   ///< commit of the sources, `+hash` of changes that are not committed

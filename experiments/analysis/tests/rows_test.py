@@ -37,6 +37,13 @@ class RowsTest(unittest.TestCase):
         names = re.findall(r"^\s+(?:std::string|int|double|bool) (\w+)", body, re.MULTILINE)
         self.assertEqual(sorted(names), sorted(rows.COLUMNS))
 
+    def test_rows_of_earlier_sources_have_more_columns(self):
+        made.write(self.path, [made.line() + ",0,2.5,137,40"],
+                   header=[*rows.COLUMNS, *rows.EARLIER])
+        self.assertEqual(rows.read([self.path]).peak_mib.tolist(), [137])
+        made.write(self.path, [made.line()])
+        self.assertTrue(rows.read([self.path]).peak_mib.isna().all())
+
     def test_other_columns_are_named(self):
         made.write(self.path, [], header=[*rows.COLUMNS[1:], "colour"])
         self.fails("rows.csv:1:", "missing: suite", "unknown: colour")

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
@@ -72,16 +71,8 @@ Registration::Uncertainty uncertaintyOf(const Cloud& fixed, const pipeline::Regi
   uncertainty.expected_rms_m = inside.expected_rms;
   uncertainty.local_rms_m = inside.local_rms;
   uncertainty.height_deviation_m = inside.height_deviation;
-  // Between the shifts in the plane and the heading stands the height, which hangs on none of them.
-  constexpr std::array<std::size_t, 5> kPlace = {0, 1, 3, 4, 5};
-  constexpr std::size_t kSize = 6;
-  for (std::size_t i = 0; i < kPlace.size(); ++i) {
-    for (std::size_t k = 0; k < kPlace.size(); ++k) {
-      uncertainty.covariance[kSize * kPlace[i] + kPlace[k]] =
-          inside.covariance(static_cast<int>(i), static_cast<int>(k));
-    }
-  }
-  uncertainty.covariance[2 * kSize + 2] = inside.height_deviation * inside.height_deviation;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(uncertainty.covariance.data()) =
+      inside.covarianceWithHeight();
   const Eigen::Vector3d levelled(inside.centre.x(), inside.centre.y(),
                                  found.placed->heights.offset);
   uncertainty.centre_m = fixed.origin + found.maps.frames.levelled_from_fixed.inverse() * levelled;
@@ -119,16 +110,6 @@ Registration publicResult(const Cloud& fixed, const pipeline::Registration& foun
     result.alternatives.push_back({other.fixed_from_moving, other.significance});
   }
   return result;
-}
-
-/// What was said about the clouds when they were read, and on the way.
-std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
-                                    const Monitor& monitor) {
-  std::vector<std::string> all = fixed.warnings;
-  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
-    all.insert(all.end(), more->begin(), more->end());
-  }
-  return all;
 }
 
 /// Refuses what was changed in vain, so that nobody believes it to have acted.
@@ -203,7 +184,7 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
   for (const StageTime& time : monitor.times()) {
     result.times.push_back({std::string(nameOf(time.stage)), time.seconds});
   }
-  result.warnings = warningsOf(fixed, moving, monitor);
+  result.warnings = report::warningsOf(fixed, moving, monitor);
   result.record = std::move(record);
   return result;
 }

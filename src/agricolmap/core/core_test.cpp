@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <numbers>
+#include <utility>
 
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
@@ -32,6 +33,13 @@ void listOptions(OptionTable& table, OuterOptions& o) {
   table.flag("on", o.on, "whether");
   table.choice("colour", o.colour, {"red", "green"}, "which");
 }
+
+template <typename Table>
+concept HasFields = requires(Table&& table) {
+  std::forward<Table>(table).fields();
+};
+// In `for (... : optionTable(options).fields())` they would be gone before the first round.
+static_assert(HasFields<OptionTable&> && HasFields<const OptionTable&> && !HasFields<OptionTable>);
 
 TEST(OptionTable, NamesNestedFields) {
   OuterOptions options;

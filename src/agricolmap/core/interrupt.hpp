@@ -40,20 +40,12 @@ class StopScope {
   detail::StopHandover handover_;
 };
 
-/// The token of the scope that this is called in, for threads that are started there by hand.
-inline std::stop_token stopOfScope() {
-  return detail::stop_of_thread != nullptr ? *detail::stop_of_thread : std::stop_token{};
-}
-
-/// Whether the token of the scope that this is called in asks to stop.
-inline bool interruptRequested() noexcept {
-  return detail::stop_of_thread != nullptr && detail::stop_of_thread->stop_requested();
-}
-
 /// Throws Interrupted once the token of the scope that this is called in asks to stop. Cheap: call
 /// it in every long loop.
 inline void throwIfInterrupted() {
-  if (interruptRequested()) throw Interrupted();
+  if (detail::stop_of_thread != nullptr && detail::stop_of_thread->stop_requested()) {
+    throw Interrupted();
+  }
 }
 
 }  // namespace agricolmap

@@ -73,7 +73,9 @@ class OptionTable {
     prefix_ = outer;
   }
 
-  const std::vector<OptionField>& fields() const { return fields_; }
+  const std::vector<OptionField>& fields() const& { return fields_; }
+  /// Not of a temporary, in whose loop the fields would be gone.
+  const std::vector<OptionField>& fields() const&& = delete;
   /// Throws UsageError with the path, the value and the limits of the first field outside them.
   void check() const;
   /// The field at `path`; nullptr if there is none.

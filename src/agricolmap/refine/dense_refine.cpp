@@ -214,7 +214,7 @@ void addSample(const Sample& s, const Look& look, const Noise& noise, double rob
   for (int b = 0; b < 3; ++b) {
     for (int i = 0; i < 6; ++i) sums.block[b][i] += curvature[b] * products[i];
   }
-  for (int b = 0; b < 2; ++b) {
+  for (Eigen::Index b = 0; b < 2; ++b) {
     sums.right[3 * b] += pull[b] * x;
     sums.right[3 * b + 1] += pull[b] * y;
     sums.right[3 * b + 2] += pull[b];

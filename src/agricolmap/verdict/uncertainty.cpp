@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -40,6 +41,15 @@ Eigen::Matrix<double, 2, 5> PoseUncertainty::jacobian(const Eigen::Vector2d& fix
   j.col(3) = axes.col(0) * axes.col(0).dot(q);
   j.col(4) = axes.col(1) * axes.col(1).dot(q);
   return j;
+}
+
+Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight() const {
+  // Between the shifts in the plane and the heading stands the height, which hangs on none of them.
+  constexpr std::array<int, kParameters> kPlace = {0, 1, 3, 4, 5};
+  Eigen::Matrix<double, 6, 6> with_height = Eigen::Matrix<double, 6, 6>::Zero();
+  with_height(kPlace, kPlace) = covariance;
+  with_height(2, 2) = height_deviation * height_deviation;
+  return with_height;
 }
 
 namespace {

@@ -62,6 +62,15 @@ TEST(Uncertainty, GrowsWithWhatLiesBeyondTheMap) {
   EXPECT_GT(half.expected_rms, 2.0 * uncertaintyOf(0.02).expected_rms);
 }
 
+TEST(Uncertainty, TheHeightHangsOnNothingElse) {
+  const PoseUncertainty found = uncertaintyOf(0.02);
+  const Eigen::Matrix<double, 6, 6> all = found.covarianceWithHeight();
+  EXPECT_EQ(all(0, 1), found.covariance(0, 1));
+  EXPECT_EQ(all(5, 3), found.covariance(4, 2));
+  EXPECT_EQ(all(2, 2), found.height_deviation * found.height_deviation);
+  EXPECT_EQ(all.row(2).sum(), all(2, 2));
+}
+
 TEST(Uncertainty, NeedsBlocks) {
   const auto none = [](const Eigen::Vector2d&) { return Eigen::Vector2d(0.0, 0.0); };
   const map::SignalMap fixed = texture({0.0, 0.0}, 60, 60, none);

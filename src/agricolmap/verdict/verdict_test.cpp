@@ -19,6 +19,7 @@ Finding clearFinding() {
   finding.overlap = 1.0;
   finding.evidence.significance = 24.0;
   finding.evidence.uniqueness = 4.5;
+  finding.evidence.decoys = {4.6, 4.9};
   finding.evidence.blocks.resize(16);
   finding.evidence.agreeing = 15;
   PoseUncertainty uncertainty;

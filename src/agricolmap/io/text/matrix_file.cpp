@@ -46,28 +46,15 @@ Eigen::Affine3d matrixFrom(const std::vector<double>& n, const std::filesystem::
   return affineFrom(n, path);
 }
 
-PublishedTruth truthFrom(const std::vector<double>& n, const std::filesystem::path& path) {
-  if (n.size() != kTruthNumbers) {
-    throw InputError(
-        fmt::format("{}: {} numbers; a published truth has 14: a 3x4 affine and 2 relative scales",
-                    path.string(), n.size()));
-  }
-  return {affineFrom(n, path), {n[12], n[13]}};
-}
-
 }  // namespace
 
 Eigen::Affine3d readMatrix(const std::filesystem::path& path) {
   return matrixFrom(readNumbers(path).numbers, path);
 }
 
-PublishedTruth readPublishedTruth(const std::filesystem::path& path) {
-  return truthFrom(readNumbers(path).numbers, path);
-}
-
 Eigen::Affine3d readTransform(const std::filesystem::path& path) {
   const std::vector<double> numbers = readNumbers(path).numbers;
-  if (numbers.size() == kTruthNumbers) return truthFrom(numbers, path).affine;
+  if (numbers.size() == kTruthNumbers) return affineFrom(numbers, path);
   if (numbers.size() == kMatrixNumbers) return matrixFrom(numbers, path);
   throw InputError(fmt::format(
       "{}: {} numbers; a transform is a 4x4 matrix (16) or a 3x4 affine and 2 scales (14)",

@@ -18,17 +18,9 @@ Eigen::Affine3d readMatrix(const std::filesystem::path& path);
 void writeMatrix(const OutputPath& path, const Eigen::Affine3d& target_from_source,
                  const std::string& comment = "");
 
-/// Ground truth as published with the paper's data: 12 numbers of a 3×4 affine, row-major, then the
-/// relative scale errors of x and y, as they stand in the file.
-struct PublishedTruth {
-  Eigen::Affine3d affine = Eigen::Affine3d::Identity();
-  Eigen::Vector2d relative_scale = Eigen::Vector2d::Zero();
-};
-
-/// Reads 12 + 2 numbers. Throws InputError.
-PublishedTruth readPublishedTruth(const std::filesystem::path& path);
-
-/// Reads either of the two, told apart by how many numbers there are.
+/// Reads such a matrix or a ground truth as published with the paper's data, told apart by how many
+/// numbers there are: 12 of a 3×4 affine, row-major, then the relative scale errors of x and y,
+/// which the affine has already.
 Eigen::Affine3d readTransform(const std::filesystem::path& path);
 
 }  // namespace agricolmap::io

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
-#include <array>
 #include <cmath>
 
 #include "agricolmap/core/angles.hpp"
@@ -159,12 +158,7 @@ Json evidenceJson(const verdict::Evidence& evidence) {
 Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registration) {
   if (!registration.transform.has_value() || !registration.placed->uncertainty) return nullptr;
   const verdict::PoseUncertainty& uncertainty = *registration.placed->uncertainty;
-  constexpr std::array<int, 5> kPlace = {0, 1, 3, 4, 5};
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  for (int i = 0; i < 5; ++i) {
-    for (int j = 0; j < 5; ++j) covariance(kPlace[i], kPlace[j]) = uncertainty.covariance(i, j);
-  }
-  covariance(2, 2) = uncertainty.height_deviation * uncertainty.height_deviation;
+  const Eigen::Matrix<double, 6, 6> covariance = uncertainty.covarianceWithHeight();
   // The levelled frame is turned into the file's by a tilt alone.
   const Eigen::Affine3d file_from_levelled = registration.maps.frames.levelled_from_fixed.inverse();
   const Eigen::Vector3d centre =
@@ -218,6 +212,15 @@ std::size_t threadsInForce(int asked) {
 
 }  // namespace
 
+std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
+                                    const Monitor& monitor) {
+  std::vector<std::string> all = fixed.warnings;
+  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
+    all.insert(all.end(), more->begin(), more->end());
+  }
+  return all;
+}
+
 nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
                                         const pipeline::Registration& registration,
                                         const Monitor& monitor,
@@ -227,11 +230,7 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
-  std::vector<std::string> warnings = fixed.warnings;
-  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
-    warnings.insert(warnings.end(), more->begin(), more->end());
-  }
-  json["warnings"] = stringsJson(warnings);
+  json["warnings"] = stringsJson(warningsOf(fixed, moving, monitor));
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
   json["transform"] = transformJson(fixed, moving, registration);

@@ -29,6 +29,10 @@ struct RegistrationReportInfo {
   std::vector<std::string> pictures;  ///< names of the pictures beside the report
 };
 
+/// What was said about the clouds when they were read, and on the way.
+std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
+                                    const Monitor& monitor);
+
 /// The report; numbers are doubles to the last digit, what is not finite is null. All strings are
 /// valid UTF-8.
 nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,

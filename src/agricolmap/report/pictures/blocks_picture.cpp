@@ -47,19 +47,9 @@ GroundRect blocksGround(const Scene& scene) {
   return ground.grown(kRim);
 }
 
-void paintStrip(PictureCanvas& canvas, const Scene& scene, const View& view) {
-  LayerRow fixed(scene.fixed, Eigen::Affine2d::Identity(), view);
-  canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
-    fixed.sample(y);
-    for (int i = 0; i < view.rect.width; ++i) {
-      if (fixed.seen(i) <= 0.5F) {
-        out[i] = darkHatch(view.rect.x + i, y);
-        continue;
-      }
-      const int grey = 40 + static_cast<int>(70.0F * scene.fixed_range.strength(fixed.value(i)));
-      out[i] = packPixel(grey, grey, grey);
-    }
-  });
+std::uint32_t dimGrey(float strength) {
+  const int grey = 40 + static_cast<int>(70.0F * strength);
+  return packPixel(grey, grey, grey);
 }
 
 void drawBlock(PictureCanvas& canvas, const Scene& scene, const View& view,
@@ -145,7 +135,7 @@ void writeBlocksPicture(const io::OutputPath& path, const Scene& scene) {
             result.verdict, true);
   PictureCanvas& canvas = page.canvas;
   const View view = fitView({kMargin, page.top, kInnerWidth, height}, ground);
-  paintStrip(canvas, scene, view);
+  paintGround(canvas, scene, view, dimGrey);
   {
     const PictureCanvas::Clip clip(canvas, view.rect);
     const Eigen::Vector2d& size = result.placed->evidence.block_size;

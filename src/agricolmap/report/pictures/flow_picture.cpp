@@ -33,20 +33,9 @@ GroundRect region(const Scene& scene) {
   return GroundRect{box.center(), Eigen::Matrix2d::Identity(), 0.5 * box.sizes()}.grown(kRim);
 }
 
-void paintDim(PictureCanvas& canvas, const Scene& scene, const View& view) {
-  LayerRow row(scene.fixed, Eigen::Affine2d::Identity(), view);
-  canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
-    row.sample(y);
-    for (int i = 0; i < view.rect.width; ++i) {
-      if (row.seen(i) <= 0.5F) {
-        out[i] = darkHatch(view.rect.x + i, y);
-        continue;
-      }
-      const float s = scene.fixed_range.strength(row.value(i));
-      out[i] = packPixel(42 + static_cast<int>(34.0F * s), 40 + static_cast<int>(70.0F * s),
-                         38 + static_cast<int>(24.0F * s));
-    }
-  });
+std::uint32_t dimGreen(float strength) {
+  return packPixel(42 + static_cast<int>(34.0F * strength), 40 + static_cast<int>(70.0F * strength),
+                   38 + static_cast<int>(24.0F * strength));
 }
 
 /// Every how many-th of `size` matches is drawn, so that at most about `limit` are.
@@ -161,7 +150,7 @@ void writeFlowPicture(const io::OutputPath& path, const Scene& scene) {
             result.verdict, true);
   PictureCanvas& canvas = page.canvas;
   const View view = fitView({kMargin, page.top, kPanelWidth, height}, ground);
-  paintDim(canvas, scene, view);
+  paintGround(canvas, scene, view, dimGreen);
   {
     const PictureCanvas::Clip clip(canvas, view.rect);
     drawMatches(canvas, scene, view);

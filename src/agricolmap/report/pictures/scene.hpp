@@ -6,6 +6,7 @@
 
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/report/draw/map_layer.hpp"
+#include "agricolmap/report/draw/page.hpp"
 #include "agricolmap/report/draw/view.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 
@@ -48,6 +49,20 @@ class Scene {
   /// The matches that the pose was estimated from; empty where a search found it as a whole.
   const std::vector<Match>& winningMatches() const;
 };
+
+/// Paints the fixed map for what is drawn over it: `pixel(strength)` where it is known, else
+/// hatched.
+template <typename Pixel>
+void paintGround(PictureCanvas& canvas, const Scene& scene, const View& view, const Pixel& pixel) {
+  LayerRow row(scene.fixed, Eigen::Affine2d::Identity(), view);
+  canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
+    row.sample(y);
+    for (int i = 0; i < view.rect.width; ++i) {
+      out[i] = row.seen(i) > 0.5F ? pixel(scene.fixed_range.strength(row.value(i)))
+                                  : darkHatch(view.rect.x + i, y);
+    }
+  });
+}
 
 /// Side of the insets [m].
 inline constexpr double kInsetSide = 2.0;

@@ -9,7 +9,7 @@
 #include "agricolmap/core/raster.hpp"
 #include "agricolmap/report/draw/view.hpp"
 
-namespace agricolmap::report {
+namespace agricolmap::simulate {
 
 /// Colours of a cloud, drawn in any view of the ground.
 class CloudPhoto {
@@ -27,7 +27,7 @@ class CloudPhoto {
   static constexpr std::uint32_t kNothing = 0xFF000000;
   /// Colours for the pixels of `view`, top row first: 0x00RRGGBB or kNothing. The highest points
   /// count most, as leaves hide the soil under them; gaps of the size of the spacing are closed.
-  Raster<std::uint32_t> shoot(const View& view) const;
+  Raster<std::uint32_t> shoot(const report::View& view) const;
 
  private:
   void survey();
@@ -38,4 +38,4 @@ class CloudPhoto {
   std::vector<Eigen::Vector2d> outline_;
 };
 
-}  // namespace agricolmap::report
+}  // namespace agricolmap::simulate

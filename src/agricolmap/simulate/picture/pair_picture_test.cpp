@@ -1,4 +1,4 @@
-#include "agricolmap/report/pictures/pair_picture.hpp"
+#include "agricolmap/simulate/picture/pair_picture.hpp"
 
 #include <fstream>
 #include <sstream>
@@ -10,7 +10,7 @@
 #include "agricolmap/report/draw/page.hpp"
 #include "agricolmap/report/draw/test_picture.hpp"
 
-namespace agricolmap::report {
+namespace agricolmap::simulate {
 namespace {
 
 using testing::Picture;
@@ -62,14 +62,15 @@ bool isPlant(std::uint32_t pixel) { return ((pixel >> 8) & 255) > ((pixel >> 16)
 
 /// Share of the pixels at which the two close-ups, side by side, show the same: plant or soil.
 double closeUpsAgree(const Picture& picture) {
-  constexpr int kSquare = (kInnerWidth - 2 * kGap) / 3;
-  constexpr int kLeft = kMargin + kSquare + kGap;
+  constexpr int kSquare = (report::kInnerWidth - 2 * report::kGap) / 3;
+  constexpr int kLeft = report::kMargin + kSquare + report::kGap;
   int same = 0;
   int all = 0;
   // Away from labels and arrows, and where the strip, 1.4 m of 2 m wide, has points.
   for (int y = 72 + 130; y < 72 + 270; ++y) {
     for (int x = kLeft + 100; x < kLeft + kSquare - 100; ++x) {
-      if (isPlant(picture.pixel(x, y)) == isPlant(picture.pixel(x + kSquare + kGap, y))) ++same;
+      if (isPlant(picture.pixel(x, y)) == isPlant(picture.pixel(x + kSquare + report::kGap, y)))
+        ++same;
       ++all;
     }
   }
@@ -81,7 +82,7 @@ TEST_F(PairPicture, ShowsTheSamePlaceFromBoth) {
   writePairPicture(dir_ / "pair.png", pair.fixed, pair.moving, pair.fixed_from_moving);
   const Picture picture(dir_ / "pair.png");
   ASSERT_TRUE(picture.ok());
-  EXPECT_EQ(picture.width(), kPageWidth);
+  EXPECT_EQ(picture.width(), report::kPageWidth);
   EXPECT_LT(picture.height(), 1500);
   EXPECT_GT(closeUpsAgree(picture), 0.95);
   // Neither an empty page nor one flat panel.
@@ -102,7 +103,7 @@ TEST_F(PairPicture, DifferentFieldsHaveNoOutline) {
     const Picture picture(dir_ / "pair.png");
     int count = 0;
     for (int y = 72 + 60; y < 72 + 340; ++y) {
-      for (int x = kMargin + 4; x < kMargin + 340; ++x) {
+      for (int x = report::kMargin + 4; x < report::kMargin + 340; ++x) {
         if ((picture.pixel(x, y) & 0xF0F0F0U) == 0xF0F0F0U) ++count;
       }
     }
@@ -154,4 +155,4 @@ TEST_F(PairPicture, FailuresAreErrors) {
 }
 
 }  // namespace
-}  // namespace agricolmap::report
+}  // namespace agricolmap::simulate

@@ -1,4 +1,4 @@
-#include "agricolmap/report/pictures/cloud_photo.hpp"
+#include "agricolmap/simulate/picture/cloud_photo.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,11 @@
 #include "agricolmap/core/transform.hpp"
 #include "agricolmap/report/draw/outline.hpp"
 
-namespace agricolmap::report {
+namespace agricolmap::simulate {
 namespace {
+
+using report::GroundRect;
+using report::View;
 
 constexpr Rgb kSoil{140, 110, 80};
 constexpr Rgb kLeaf{40, 160, 50};
@@ -54,7 +57,7 @@ TEST(CloudPhoto, KnowsSpacingAndOutline) {
   turned.linear().topLeftCorner<2, 2>() = rotation2(0.7);
   const CloudPhoto photo(cloud, turned);
   EXPECT_NEAR(photo.spacing(), 0.01, 0.001);
-  const GroundRect outline = smallestRectangle(photo.outline());
+  const GroundRect outline = report::smallestRectangle(photo.outline());
   EXPECT_NEAR(outline.half_extent.x(), 1.5, 0.06);
   EXPECT_NEAR(outline.half_extent.y(), 0.5, 0.06);
   EXPECT_LT((outline.centre - rotation2(0.7) * Eigen::Vector2d(1.5, 0.5)).norm(), 0.06);
@@ -128,4 +131,4 @@ TEST(CloudPhoto, NeedsColours) {
 }
 
 }  // namespace
-}  // namespace agricolmap::report
+}  // namespace agricolmap::simulate

@@ -1,4 +1,4 @@
-#include "agricolmap/report/pictures/cloud_photo.hpp"
+#include "agricolmap/simulate/picture/cloud_photo.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "agricolmap/report/draw/outline.hpp"
 #include "agricolmap/report/draw/page.hpp"
 
-namespace agricolmap::report {
+namespace agricolmap::simulate {
 namespace {
 
 constexpr double kSurveyCell = 0.05;     // for spacing and outline [m]
@@ -29,7 +29,7 @@ struct Seat {
 /// Cloud coordinates → pixels of the rectangle's upper left corner.
 class Seating {
  public:
-  Seating(const Eigen::Affine3d& ground_from_cloud, const View& view) {
+  Seating(const Eigen::Affine3d& ground_from_cloud, const report::View& view) {
     const Eigen::Vector2d corner(view.rect.x, view.rect.y);
     const Eigen::Vector2d zero = view.pixel(ground_from_cloud.translation().head<2>()) - corner;
     Eigen::Affine3d all;
@@ -139,10 +139,10 @@ void CloudPhoto::survey() {
     }
   }
   spacing_ = frame.cell * std::sqrt(static_cast<double>(covered.size()) / points);
-  outline_ = convexHull(std::move(covered));
+  outline_ = report::convexHull(std::move(covered));
 }
 
-Raster<std::uint32_t> CloudPhoto::shoot(const View& view) const {
+Raster<std::uint32_t> CloudPhoto::shoot(const report::View& view) const {
   const int rows = view.rect.height;
   const int cols = view.rect.width;
   const Seating seating(ground_from_cloud_, view);
@@ -174,9 +174,9 @@ Raster<std::uint32_t> CloudPhoto::shoot(const View& view) const {
   for (std::size_t i = 0; i < picture.size(); ++i) {
     if (sums[i](3) <= 0.0F) continue;
     const Eigen::Array3i rgb = (sums[i].head<3>() / sums[i](3) + 0.5F).cast<int>();
-    picture[i] = packPixel(rgb(0), rgb(1), rgb(2));
+    picture[i] = report::packPixel(rgb(0), rgb(1), rgb(2));
   }
   return picture;
 }
 
-}  // namespace agricolmap::report
+}  // namespace agricolmap::simulate

@@ -1,4 +1,4 @@
-#include "agricolmap/report/pictures/pair_picture.hpp"
+#include "agricolmap/simulate/picture/pair_picture.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,24 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/report/draw/outline.hpp"
 #include "agricolmap/report/draw/page.hpp"
-#include "agricolmap/report/pictures/cloud_photo.hpp"
+#include "agricolmap/simulate/picture/cloud_photo.hpp"
 
-namespace agricolmap::report {
+namespace agricolmap::simulate {
 namespace {
+
+namespace palette = report::palette;
+using report::Align;
+using report::Colour;
+using report::GroundRect;
+using report::hexColour;
+using report::kGap;
+using report::kInnerWidth;
+using report::kMargin;
+using report::LegendItem;
+using report::Page;
+using report::PictureCanvas;
+using report::PixelRect;
+using report::View;
 
 constexpr double kRim = 0.2;          // of ground around the strip [m]
 constexpr double kCloseUpSide = 2.0;  // [m]
@@ -44,7 +58,7 @@ GroundRect wholeMap(const CloudPhoto& fixed, const CloudPhoto& moving, bool same
 }
 
 Layout layoutOf(const CloudPhoto& fixed, const CloudPhoto& moving, int top, bool same_field) {
-  const GroundRect strip = smallestRectangle(moving.outline()).grown(kRim);
+  const GroundRect strip = report::smallestRectangle(moving.outline()).grown(kRim);
   const GroundRect close{strip.centre, strip.axes, Eigen::Vector2d::Constant(0.5 * kCloseUpSide)};
   const int strip_height = stripHeight(strip);
   const auto square = [&](int i) {
@@ -176,4 +190,4 @@ void writePairPicture(const io::OutputPath& path, const Cloud& fixed, const Clou
   page.canvas.write(path);
 }
 
-}  // namespace agricolmap::report
+}  // namespace agricolmap::simulate

@@ -7,7 +7,7 @@
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/io/output/output_path.hpp"
 
-namespace agricolmap::report {
+namespace agricolmap::simulate {
 
 /// What the picture says beside what the clouds show.
 struct PairPictureInfo {
@@ -24,4 +24,4 @@ struct PairPictureInfo {
 void writePairPicture(const io::OutputPath& path, const Cloud& fixed, const Cloud& moving,
                       const Eigen::Affine3d& fixed_from_moving, const PairPictureInfo& info = {});
 
-}  // namespace agricolmap::report
+}  // namespace agricolmap::simulate

@@ -1,0 +1,11 @@
+# expect(CODE TEXT COMMAND...): the command ends with that code and says that text.
+function(expect expected message)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT code EQUAL expected)
+    message(FATAL_ERROR "${ARGN}: ends with ${code}, not ${expected}: ${text}")
+  endif()
+  string(FIND "${text}" "${message}" place)
+  if(place LESS 0)
+    message(FATAL_ERROR "${ARGN}: does not say '${message}': ${text}")
+  endif()
+endfunction()
