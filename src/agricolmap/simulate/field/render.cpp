@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/simulate/field/leaf_painter.hpp"
 #include "agricolmap/simulate/field/light.hpp"
 #include "agricolmap/simulate/field/plant.hpp"
 
