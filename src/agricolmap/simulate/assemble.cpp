@@ -127,7 +127,8 @@ Cloud cloudFromAbove(FieldPoints above, const Eigen::Vector3d& base) {
 }
 
 SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vector3d& base,
-                             const StripPlace& strip, FieldPoints below, std::uint64_t seed) {
+                             const StripPlace& strip, FieldPoints below, const MosaicPieces& pieces,
+                             std::uint64_t seed) {
   checkSeen(below);
   if (options.mirrored) {
     for (Eigen::Vector3f& point : below.xyz) point.y() = -point.y();
@@ -168,8 +169,10 @@ SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vect
       count,
       [&](std::size_t i) {
         const Eigen::Vector3d local = below.xyz[i].cast<double>();
-        pair.truth[i] = begin + turn * local;
-        const Eigen::Vector3d drifted = pair.truth[i] + turn * drift.at(local.x(), local.y());
+        const Eigen::Vector3d place = begin + turn * local;
+        pair.truth[i] = place;
+        pair.truth[i].head<2>() += pieces.displacement((place - base).head<2>());
+        const Eigen::Vector3d drifted = place + turn * drift.at(local.x(), local.y());
         pair.ugv.xyz[i] = (file_from_uav * drifted - pair.ugv.origin).cast<float>();
       },
       1U << 14);

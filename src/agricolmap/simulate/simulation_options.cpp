@@ -57,6 +57,16 @@ void listOptions(OptionTable& t, ColourOptions& o) {
   t.number("noise", o.noise, 0.0, 60.0, "counts", "deviation per channel");
 }
 
+void listOptions(OptionTable& t, MosaicOptions& o) {
+  t.number("piece", o.piece, 1.0, 100.0, "m", "distance of the pieces' centres");
+  t.number("shift", o.shift, 0.0, 1.0, "m", "deviation of a piece's place per axis");
+  t.number("shear", o.shear, 0.0, 0.1, "", "deviation of a piece's stretch, shear and turn");
+  t.number("blur", o.blur, 0.0, 10.0, "gsd", "further blur of colours, each piece's up to this");
+  t.number("exposure", o.exposure, 0.0, 0.5, "", "deviation of a piece's brightness");
+  t.number("doubled", o.doubled, 0.0, 1.0, "", "fraction of pieces that show everything twice");
+  t.number("doubled_shift", o.doubled_shift, 0.0, 1.0, "m", "distance between the two");
+}
+
 void listOptions(OptionTable& t, UavOptions& o) {
   t.number("gsd", o.gsd, 0.004, 0.2, "m", "ground sampling distance").basic();
   t.number("density", o.density, 0.01, 4.0, "1/gsd2", "points per squared sampling distance")
@@ -70,6 +80,7 @@ void listOptions(OptionTable& t, UavOptions& o) {
            "fraction of the canopy's height lost besides smoothing");
   t.number("dome", o.dome, -1.0, 1.0, "m", "height error of a corner against the centre");
   t.number("holes", o.holes, 0.0, 0.5, "", "fraction of the area without points").basic();
+  t.group("mosaic", o.mosaic);
   t.group("colour", o.colour);
 }
 

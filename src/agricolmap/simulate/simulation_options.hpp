@@ -61,6 +61,23 @@ struct ColourOptions {
 };
 void listOptions(OptionTable& table, ColourOptions& options);
 
+/// The pieces that a drone's map is put together from, each of other pictures: polygons whose
+/// centres are about `piece` apart. `truth` follows them, as what a piece shows is shown there.
+struct MosaicOptions {
+  double piece = 6.0;           ///< distance of the pieces [m]
+  double shift = 0.0;           ///< deviation of a piece's place per axis [m]
+  double shear = 0.0;           ///< deviation of its stretch, shear and turn, each
+  double blur = 0.0;            ///< further blur of colours, each piece's from 0 to this [gsd]
+  double exposure = 0.0;        ///< deviation of its brightness, fraction
+  double doubled = 0.0;         ///< fraction of pieces that show everything twice
+  double doubled_shift = 0.05;  ///< distance between the two [m]
+  /// Whether the pieces differ in anything.
+  bool any() const {
+    return shift > 0.0 || shear > 0.0 || blur > 0.0 || exposure > 0.0 || doubled > 0.0;
+  }
+};
+void listOptions(OptionTable& table, MosaicOptions& options);
+
 /// The drone's cloud: seen from above, reconstructed from overlapping pictures.
 struct UavOptions {
   double gsd = 0.014;               ///< ground sampling distance [m]
@@ -73,6 +90,7 @@ struct UavOptions {
   double underestimate = 0.25;      ///< fraction of the canopy's height lost besides smoothing
   double dome = 0.04;               ///< height error of a corner against the centre [m]
   double holes = 0.01;              ///< fraction of the area without points
+  MosaicOptions mosaic;
   ColourOptions colour;
 };
 void listOptions(OptionTable& table, UavOptions& options);

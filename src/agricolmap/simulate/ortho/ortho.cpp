@@ -101,8 +101,10 @@ SimulatedStrip SimulatedOrtho::strip(const SimulationOptions& options, int index
   const double moved = std::min(1.0, std::abs(options.views.sun_hours) / 3.0);
   lightCanvas(canvas, sunDirection(drive.solar_hour),
               1.0 - 0.5 * moved * (1.0 - options.views.overcast));
-  SimulatedStrip strip = assembleStrip(options, uav_.origin, place,
-                                       senseFromGround(canvas, options.ugv, seed(7)), seed(8));
+  const MosaicPieces pieces(options.uav.mosaic, {scene_->width(), scene_->height()},
+                            seedOf(options, 5));
+  SimulatedStrip strip = assembleStrip(
+      options, uav_.origin, place, senseFromGround(canvas, options.ugv, seed(7)), pieces, seed(8));
   strip.row_heading = field_.row_heading;
   return strip;
 }
