@@ -93,8 +93,15 @@ Visit flightOf(const ViewOptions& views, std::uint64_t seed) {
   Visit visit;
   visit.seed = seed;
   visit.leaf_unshared = views.leaf_unshared;
+  visit.soil_unshared = views.leaf_unshared * (1.0 - views.soil_kept);
   // Half of the variance between the views comes from each; two axes share it.
   visit.wind = 0.5 * views.wind;
+  Random random = Random::stream(seed, 21);
+  const double downwind = random.uniform(0.0, 2.0 * std::numbers::pi);
+  visit.lean =
+      std::tan(radians(views.lean_deg)) * Eigen::Vector2d(std::cos(downwind), std::sin(downwind));
+  visit.ripeness = views.ripeness;
+  visit.weeds_new = views.weeds_new;
   visit.solar_hour = views.sun_hour;
   visit.overcast = views.overcast;
   return visit;
@@ -103,6 +110,11 @@ Visit flightOf(const ViewOptions& views, std::uint64_t seed) {
 Visit driveOf(const ViewOptions& views, std::uint64_t seed) {
   Visit visit = flightOf(views, seed);
   visit.growth = views.growth;
+  visit.growth_spread = views.growth_spread;
+  visit.ripeness = views.ripeness + views.ripening;
+  visit.soil_contrast = views.soil_contrast;
+  visit.weeds_new = 0.0;
+  visit.plants_lost = views.plants_lost;
   visit.weeds_pulled = views.weeds_pulled;
   visit.solar_hour = views.sun_hour + views.sun_hours;
   return visit;

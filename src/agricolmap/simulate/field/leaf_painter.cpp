@@ -143,9 +143,7 @@ void LeafPainter::paint(const Plant& plant, const Foliage& foliage, float soil) 
   for (int i = 0; i < foliage.count; ++i) {
     const Leaf& leaf = foliage.leaves[static_cast<std::size_t>(i)];
     const Eigen::Vector2f moved = place + turn * leaf.shift;
-    std::array<float, 3> albedo = foliage.albedo;
-    for (float& a : albedo) a *= leaf.shade;
-    paintLeaf(leaf, {moved.x(), moved.y(), soil + leaf.base_z}, albedo);
+    paintLeaf(leaf, {moved.x(), moved.y(), soil + leaf.base_z}, foliage.albedoOf(leaf));
   }
 }
 

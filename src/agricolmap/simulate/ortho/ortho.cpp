@@ -66,6 +66,7 @@ SimulatedOrtho::SimulatedOrtho(OrthoField field, const SimulationOptions& option
   // The flight's wind is in the mosaic already.
   Visit still = flightOf(options.views, seedOf(options, 2));
   still.wind = 0.0;
+  still.lean.setZero();
   const double cell = std::max(uavCell(options), std::min(field_.gsd, options.uav.gsd));
   Canvas canvas = scene_->draw(makeWindow({0.0, 0.0}, 0.0, scene_->width(), scene_->height(), cell),
                                still, 0.0, false);
