@@ -57,6 +57,7 @@ std::vector<Case> paperCases(const SuiteOptions& options);
 std::vector<Case> locateCases(const SuiteOptions& options);  ///< of kFinal and kDevelop
 std::vector<Case> calibrateCases(const SuiteOptions& options);
 std::vector<Case> curvesCases(const SuiteOptions& options);
+std::vector<Case> elsewhereCases(const SuiteOptions& options);  ///< of all settings
 /// The paper's four fields and two real ones in drawn views, guesses exact.
 std::vector<Case> viewCases(const SuiteOptions& options);
 /// The guesses of a suite on viewCases, by its name.
