@@ -155,6 +155,10 @@ TEST_F(OrthoTest, FlagsThatWouldDoNothingAreRefused) {
   expectFailure({"simulate", "--row_heading", "30", "-o", out}, 2, {"--ortho"});
   expectFailure({"simulate", "--ortho", "o.tif", "--field.row_spacing", "0.5", "-o", out}, 2,
                 {"field.row-spacing", "--ortho"});
+  expectFailure({"simulate", "--ortho", "o.tif", "--field.plots.length", "5", "-o", out}, 2,
+                {"field.plots.length", "--ortho"});
+  expectFailure({"simulate", "--ortho", "o.tif", "--views.ripening", "1", "-o", out}, 2,
+                {"views.ripening", "--ortho"});
   expectFailure({"simulate", "--ortho", "o.tif", "--dsm", "d.tif", "--field.slope", "0", "-o", out},
                 2, {"field.slope", "surface model"});
   expectFailure({"simulate", "--ortho", "o.tif", "--window", "1", "2", "3", "-o", out}, 2,

@@ -44,8 +44,11 @@ ExitCode runDocument() {
       "`--row-heading`. Of the\noptions above, `field.width` and `field.height` limit the part of "
       "the mosaic that is taken,\n`field.random_row_heading` stands for a measured heading of the "
       "rows, and `field.relief`, `field.slope`,\n`field.clods` and `field.plant_size` are used "
-      "where there is no surface model. The rest of `field.*` and\n`views.weeds_pulled` do nothing "
-      "and are refused as flags. `uav.gsd` is at least the mosaic's.");
+      "where there is no surface model. The rest of `field.*` and\n`views.weeds_pulled`, "
+      "`views.weeds_new`, `views.plants_lost`, `views.growth_spread`,\n`views.ripeness`, "
+      "`views.ripening`, `views.soil_kept` and `views.soil_contrast` do nothing\nand are refused "
+      "as "
+      "flags. `uav.gsd` is at least the mosaic's.");
   printSection<io::ImportOptions>("import", "From an orthomosaic and a surface model to a cloud.");
   return ExitCode::kOk;
 }

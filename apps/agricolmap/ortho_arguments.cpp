@@ -18,12 +18,13 @@ namespace {
 
 constexpr const char* kGroup = "Instead of a simulated crop: a real orthomosaic";
 
-/// The plants are the mosaic's.
-constexpr const char* kLayout[] = {
-    "field.row_spacing", "field.plant_spacing", "field.plant_jitter", "field.lateral_jitter",
-    "field.gaps",        "field.gap_length",    "field.row_wobble",   "field.pass_rows",
-    "field.pass_error",  "field.weeds",         "field.straw",        "field.tramline_spacing",
-    "field.size_spread", "field.ridge",         "views.weeds_pulled", "field.growth_gradient"};
+/// What acts on the mosaic's plants and soil, beside the heights; the rest of `field.` does not.
+constexpr const char* kFrame[] = {"field.width", "field.height", "field.random_row_heading",
+                                  "field.row_heading_deg"};
+/// Changes of simulated plants and soil only.
+constexpr const char* kVisits[] = {"views.weeds_pulled",  "views.weeds_new",    "views.plants_lost",
+                                   "views.growth_spread", "views.ripeness",     "views.ripening",
+                                   "views.soil_kept",     "views.soil_contrast"};
 /// The heights are the surface model's.
 constexpr const char* kRelief[] = {"field.relief", "field.slope", "field.clods",
                                    "field.plant_size"};
@@ -63,12 +64,19 @@ bool OrthoArguments::given(const OptionFlags& flags) const {
     }
     return false;
   }
-  const auto refuse = [&](const char* path, const char* why) {
+  const auto refuse = [&](const std::string& path, const char* why) {
     if (flags.given(path)) {
       throw UsageError(fmt::format("{} does nothing with --ortho: {}", flagOf(path), why));
     }
   };
-  for (const char* path : kLayout) refuse(path, "the plants are those of the mosaic");
+  const auto isOneOf = [](const auto& paths, const std::string& path) {
+    return std::find(std::begin(paths), std::end(paths), path) != std::end(paths);
+  };
+  for (const std::string& path : flags.given()) {
+    const bool layout =
+        path.starts_with("field.") && !isOneOf(kFrame, path) && !isOneOf(kRelief, path);
+    if (layout || isOneOf(kVisits, path)) refuse(path, "plants and soil are those of the mosaic");
+  }
   if (!dsm_.empty()) {
     for (const char* path : kRelief) refuse(path, "the heights are those of the surface model");
   }

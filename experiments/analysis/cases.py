@@ -1,4 +1,4 @@
-"""Cases of the suites `paper` and `locate`: success, accuracy, what must not be accepted."""
+"""Cases of the suites `paper`, `locate` and `elsewhere-sim`: success, accuracy, what must not be accepted."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from .plots import CYCLE, horizontal, legend_above
 from .section import Section, Table
 from .shares import by_group, counts, number, percent
 
-SUITES = ("paper", "locate")
+SUITES = ("paper", "locate", "elsewhere-sim")
 # Smallest (1) or largest (-1) value that a column of targets.csv allows for, and what it limits.
 _LIMITS = {
     "min_success": (1, "success", "success ≥ {:.0%}"),

@@ -16,8 +16,9 @@ namespace {
 
 /// What the drone's cloud depends on, see Case::flightText.
 bool belongsToFlight(const std::string& path) {
-  static const std::vector<std::string> flight = {"views.leaf_unshared", "views.wind",
-                                                  "views.sun_hour", "views.overcast"};
+  static const std::vector<std::string> flight = {
+      "views.leaf_unshared", "views.soil_kept", "views.wind",     "views.lean_deg",
+      "views.ripeness",      "views.weeds_new", "views.sun_hour", "views.overcast"};
   return path.starts_with("field.") || path.starts_with("uav.") ||
          std::find(flight.begin(), flight.end(), path) != flight.end();
 }
@@ -62,9 +63,14 @@ std::string Case::flightText(int seed) const {
   flown.ugv = usual.ugv;
   flown.geotag = usual.geotag;
   flown.geotag.utm = geotag.utm;
-  flown.views.growth = usual.views.growth;
-  flown.views.sun_hours = usual.views.sun_hours;
-  flown.views.weeds_pulled = usual.views.weeds_pulled;
+  simulate::ViewOptions& views = flown.views;
+  views.growth = usual.views.growth;
+  views.growth_spread = usual.views.growth_spread;
+  views.ripening = usual.views.ripening;
+  views.sun_hours = usual.views.sun_hours;
+  views.soil_contrast = usual.views.soil_contrast;
+  views.weeds_pulled = usual.views.weeds_pulled;
+  views.plants_lost = usual.views.plants_lost;
   flown.other_field = flown.beyond_map = flown.mirrored = false;
   return fmt::format("{} {}", static_cast<int>(source), config::dumpYaml(optionTable(flown)));
 }

@@ -35,7 +35,10 @@ const std::vector<Entry>& entries() {
                                {"locate", Settings::kFinal, locateCases},
                                {"locate", Settings::kDevelop, locateCases},
                                {"locate", Settings::kCalibrate, calibrateCases},
-                               {"curves", Settings::kFinal, curvesCases}};
+                               {"curves", Settings::kFinal, curvesCases},
+                               {"elsewhere-sim", Settings::kFinal, elsewhereCases},
+                               {"elsewhere-sim", Settings::kDevelop, elsewhereCases},
+                               {"elsewhere-sim", Settings::kCalibrate, elsewhereCases}};
     for (const char* name : {"translation", "heading", "joint", "accuracy", "inliers"}) {
       made.push_back({name, Settings::kFinal, viewCases});
       made.push_back({name, Settings::kDevelop, viewCases});

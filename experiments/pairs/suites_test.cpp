@@ -41,7 +41,7 @@ TEST(Suites, HaveDistinctNamesAndSoundOptions) {
     }
   }
   EXPECT_EQ(casesOf("paper").size(), 15U);
-  EXPECT_EQ(suiteNames().size(), 12U);
+  EXPECT_EQ(suiteNames().size(), 13U);
 }
 
 TEST(Suites, UnknownNamesListTheKnownOnes) {
@@ -103,8 +103,44 @@ TEST(Settings, OfDrawnViewsAreDisjoint) {
   }
 }
 
+TEST(Settings, OfElsewhereAreDisjoint) {
+  // All values that an option may take in any case.
+  const auto valuesOf = [](Settings settings) {
+    std::set<std::string> values;
+    for (const Case& one : casesOf("elsewhere-sim", settings)) {
+      for (const OptionRange& range : one.ranges) {
+        EXPECT_FALSE(range.values.empty()) << range.path;
+        for (const double value : range.values) {
+          values.insert(fmt::format("{} {}", range.path, value));
+        }
+      }
+      values.insert(fmt::format("{} rows {}", one.dataset, one.options.field.row_spacing));
+    }
+    return values;
+  };
+  const std::set<std::string> develop = valuesOf(Settings::kDevelop);
+  const std::set<std::string> calibrate = valuesOf(Settings::kCalibrate);
+  for (const std::string& one : develop) EXPECT_FALSE(calibrate.contains(one)) << one;
+  for (const std::string& one : valuesOf(Settings::kFinal)) {
+    EXPECT_FALSE(develop.contains(one)) << one;
+    EXPECT_FALSE(calibrate.contains(one)) << one;
+  }
+}
+
+TEST(Cases, ElsewhereHasWrongPlacesForEveryGuess) {
+  std::set<std::string> wrong;
+  for (const Case& one : casesOf("elsewhere-sim", Settings::kCalibrate)) {
+    if (!one.options.other_field && !one.options.mirrored) continue;
+    wrong.insert(fmt::format("{} {:.2f} {}", one.options.mirrored, one.told.translation,
+                             one.told.scale_unknown));
+  }
+  EXPECT_EQ(wrong.size(), 8U);  // of another field or mirrored; usual, tight, no guess, no unit
+}
+
 TEST(Cases, StripsOfAFieldShareTheDronesView) {
-  for (const Case& one : casesOf("locate", Settings::kCalibrate)) {
+  std::vector<Case> cases = casesOf("locate", Settings::kCalibrate);
+  for (Case& one : casesOf("elsewhere-sim")) cases.push_back(std::move(one));
+  for (const Case& one : cases) {
     ASSERT_GT(one.strips_per_field, 1);
     const int first = 10 * one.strips_per_field;
     EXPECT_EQ(one.flightText(first), one.flightText(first + 1)) << one.name;

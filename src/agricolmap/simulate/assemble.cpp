@@ -93,8 +93,15 @@ Visit flightOf(const ViewOptions& views, std::uint64_t seed) {
   Visit visit;
   visit.seed = seed;
   visit.leaf_unshared = views.leaf_unshared;
+  visit.soil_unshared = views.leaf_unshared * (1.0 - views.soil_kept);
   // Half of the variance between the views comes from each; two axes share it.
   visit.wind = 0.5 * views.wind;
+  Random random = Random::stream(seed, 21);
+  const double downwind = random.uniform(0.0, 2.0 * std::numbers::pi);
+  visit.lean =
+      std::tan(radians(views.lean_deg)) * Eigen::Vector2d(std::cos(downwind), std::sin(downwind));
+  visit.ripeness = views.ripeness;
+  visit.weeds_new = views.weeds_new;
   visit.solar_hour = views.sun_hour;
   visit.overcast = views.overcast;
   return visit;
@@ -103,6 +110,11 @@ Visit flightOf(const ViewOptions& views, std::uint64_t seed) {
 Visit driveOf(const ViewOptions& views, std::uint64_t seed) {
   Visit visit = flightOf(views, seed);
   visit.growth = views.growth;
+  visit.growth_spread = views.growth_spread;
+  visit.ripeness = views.ripeness + views.ripening;
+  visit.soil_contrast = views.soil_contrast;
+  visit.weeds_new = 0.0;
+  visit.plants_lost = views.plants_lost;
   visit.weeds_pulled = views.weeds_pulled;
   visit.solar_hour = views.sun_hour + views.sun_hours;
   return visit;
@@ -127,7 +139,8 @@ Cloud cloudFromAbove(FieldPoints above, const Eigen::Vector3d& base) {
 }
 
 SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vector3d& base,
-                             const StripPlace& strip, FieldPoints below, std::uint64_t seed) {
+                             const StripPlace& strip, FieldPoints below, const MosaicPieces& pieces,
+                             std::uint64_t seed) {
   checkSeen(below);
   if (options.mirrored) {
     for (Eigen::Vector3f& point : below.xyz) point.y() = -point.y();
@@ -168,8 +181,10 @@ SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vect
       count,
       [&](std::size_t i) {
         const Eigen::Vector3d local = below.xyz[i].cast<double>();
-        pair.truth[i] = begin + turn * local;
-        const Eigen::Vector3d drifted = pair.truth[i] + turn * drift.at(local.x(), local.y());
+        const Eigen::Vector3d place = begin + turn * local;
+        pair.truth[i] = place;
+        pair.truth[i].head<2>() += pieces.displacement((place - base).head<2>());
+        const Eigen::Vector3d drifted = place + turn * drift.at(local.x(), local.y());
         pair.ugv.xyz[i] = (file_from_uav * drifted - pair.ugv.origin).cast<float>();
       },
       1U << 14);

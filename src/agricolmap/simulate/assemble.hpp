@@ -2,6 +2,7 @@
 // turning points of the field into files with their truth.
 #pragma once
 
+#include "agricolmap/simulate/field/mosaic_pieces.hpp"
 #include "agricolmap/simulate/field/render.hpp"
 #include "agricolmap/simulate/field/views.hpp"
 #include "agricolmap/simulate/simulate.hpp"
@@ -46,9 +47,10 @@ std::uint64_t stripSeed(std::uint64_t pair_seed, int index);
 /// there is no point.
 Cloud cloudFromAbove(FieldPoints above, const Eigen::Vector3d& base);
 
-/// The robot's file, its truth and affines, from points as senseFromGround gives them. Mirrors it
-/// where the options say so. Throws UsageError when there is no point.
+/// The robot's file, its truth in a map of these pieces and affines, from points as senseFromGround
+/// gives them. Mirrors it where the options say so. Throws UsageError when there is no point.
 SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vector3d& base,
-                             const StripPlace& place, FieldPoints below, std::uint64_t seed);
+                             const StripPlace& place, FieldPoints below, const MosaicPieces& pieces,
+                             std::uint64_t seed);
 
 }  // namespace agricolmap::simulate

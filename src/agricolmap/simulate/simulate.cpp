@@ -108,7 +108,9 @@ SimulatedStrip SimulatedField::strip(const SimulationOptions& options, int index
         static_cast<float>(driven.soilHeight(place.centre) - driven.soilHeight(shown.centre));
     for (Eigen::Vector3f& point : below.xyz) point.z() += lift;
   }
-  SimulatedStrip strip = assembleStrip(options, uav_.origin, place, std::move(below), seed(8));
+  const MosaicPieces pieces(options.uav.mosaic, size, seedOf(options, 5));
+  SimulatedStrip strip =
+      assembleStrip(options, uav_.origin, place, std::move(below), pieces, seed(8));
   strip.row_heading = field_.rowHeading();
   return strip;
 }

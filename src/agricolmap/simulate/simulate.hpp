@@ -16,10 +16,11 @@ namespace agricolmap::simulate {
 struct SimulatedStrip {
   Cloud ugv;
   /// Per UGV point, where it lies in the UAV file's coordinates [m]: the recorded point, sensor
-  /// noise included, without drift and without the errors of scale, level and geotag.
+  /// noise included, without drift and without the errors of scale, level and geotag; in a map of
+  /// pieces (MosaicOptions) where its piece shows it.
   std::vector<Eigen::Vector3d> truth;
   Eigen::Affine3d best_affine;  ///< UGV file → UAV file: least squares fit to `truth`
-  Eigen::Affine3d nominal;      ///< UGV file → UAV file: exact but for drift
+  Eigen::Affine3d nominal;      ///< UGV file → UAV file: exact but for drift and pieces
   Eigen::Affine3d prior;        ///< UGV file → UAV file: the initial guess
   Eigen::Vector3d strip_centre = Eigen::Vector3d::Zero();  ///< UAV file coordinates [m]
   double strip_heading = 0.0;  ///< direction of travel in the UAV file [rad]
@@ -30,7 +31,7 @@ struct SimulatedStrip {
 };
 
 struct SimulatedPair : SimulatedStrip {
-  Cloud uav;  ///< metrically right but for its own noise and dome
+  Cloud uav;  ///< metrically right but for its own noise, dome and pieces
 };
 
 /// Whether the drone's clouds of these options show the same field by the same sensor: all that

@@ -9,111 +9,10 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/simulate/test_support.hpp"
 
 namespace agricolmap::simulate {
 namespace {
-
-/// A field small enough for tests.
-SimulationOptions smallOptions(Crop crop = Crop::kSugarBeet10m) {
-  SimulationOptions options = cropPreset(crop);
-  options.field.width = 6.0;
-  options.field.height = 6.0;
-  options.ugv.length = 5.0;
-  options.ugv.width = 1.6;
-  options.ugv.spacing = 0.006;
-  options.seed = 7;
-  return options;
-}
-
-double rms(const SimulatedPair& pair, const Eigen::Affine3d& affine) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < pair.truth.size(); ++i) {
-    sum += (affine * pair.ugv.filePoint(i) - pair.truth[i]).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(pair.truth.size()));
-}
-
-/// Mean chromatic ExG and height on 2 cm cells of the strip, in the strip's own axes.
-struct StripMap {
-  static constexpr double kCell = 0.02;
-  StripMap(const SimulatedPair& pair, const SimulationOptions& options)
-      : rows(static_cast<int>(options.ugv.width / kCell)),
-        cols(static_cast<int>(options.ugv.length / kCell)),
-        from(Eigen::Translation3d(0.5 * options.ugv.length, 0.5 * options.ugv.width, 0.0) *
-             Eigen::AngleAxisd(-pair.strip_heading, Eigen::Vector3d::UnitZ()) *
-             Eigen::Translation3d(-pair.strip_centre)),
-        count(rows, cols),
-        exg(rows, cols),
-        height(rows, cols) {}
-  void add(const Eigen::Vector3d& point, Rgb rgb) {
-    const Eigen::Vector3d p = from * point / kCell;
-    const int c = static_cast<int>(std::floor(p.x()));
-    const int r = static_cast<int>(std::floor(p.y()));
-    if (!count.contains(r, c)) return;
-    const float green = map::excessGreen(rgb, map::ExgKind::kChromatic);
-    count(r, c) += 1.0F;
-    exg(r, c) += (green - exg(r, c)) / count(r, c);
-    height(r, c) += (static_cast<float>(p.z() * kCell) - height(r, c)) / count(r, c);
-  }
-  int rows;
-  int cols;
-  Eigen::Affine3d from;
-  Raster<float> count;
-  Raster<float> exg;
-  Raster<float> height;
-};
-
-StripMap mapFromAbove(const SimulatedPair& pair, const SimulationOptions& options) {
-  StripMap map(pair, options);
-  for (std::size_t i = 0; i < pair.uav.size(); ++i) map.add(pair.uav.filePoint(i), pair.uav.rgb[i]);
-  return map;
-}
-StripMap mapFromGround(const SimulatedPair& pair, const SimulationOptions& options) {
-  StripMap map(pair, options);
-  for (std::size_t i = 0; i < pair.truth.size(); ++i) map.add(pair.truth[i], pair.ugv.rgb[i]);
-  return map;
-}
-
-/// Correlation of the two views' ExG over the cells that both fill, coarse part removed.
-double correlation(const SimulatedPair& pair, const SimulationOptions& options) {
-  const StripMap a = mapFromAbove(pair, options);
-  const StripMap b = mapFromGround(pair, options);
-  const auto highPassed = [](const StripMap& map) {
-    Raster<float> low = map.exg;
-    Raster<float> weight = map.count;
-    for (float& w : weight) w = w > 0.0F ? 1.0F : 0.0F;
-    blurRaster(low, 0.25 / StripMap::kCell);
-    blurRaster(weight, 0.25 / StripMap::kCell);
-    Raster<float> high = map.exg;
-    for (std::size_t i = 0; i < high.size(); ++i) high[i] -= low[i] / std::max(weight[i], 1e-3F);
-    return high;
-  };
-  const Raster<float> x = highPassed(a);
-  const Raster<float> y = highPassed(b);
-  double n = 0.0;
-  double sx = 0.0;
-  double sy = 0.0;
-  double sxx = 0.0;
-  double syy = 0.0;
-  double sxy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (a.count[i] == 0.0F || b.count[i] == 0.0F) continue;
-    const double u = static_cast<double>(x[i]);
-    const double v = static_cast<double>(y[i]);
-    n += 1.0;
-    sx += u;
-    sy += v;
-    sxx += u * u;
-    syy += v * v;
-    sxy += u * v;
-  }
-  return (n * sxy - sx * sy) / std::sqrt((n * sxx - sx * sx) * (n * syy - sy * sy));
-}
-
-double correlation(const SimulationOptions& options) {
-  return correlation(simulatePair(options), options);
-}
 
 TEST(Simulate, PresetsAreWithinTheirLimitsAndDistinct) {
   for (const Crop crop : {Crop::kSoybean, Crop::kSugarBeet10m, Crop::kSugarBeet20m,
@@ -343,16 +242,13 @@ TEST(Simulate, PlantsHideTheGroundBehindThem) {
 }
 
 TEST(Simulate, GapsThinTheField) {
-  const auto greenShare = [](double gaps) {
+  const auto shareAt = [](double gaps) {
     SimulationOptions options = smallOptions(Crop::kSoybean);
     options.field.gaps = gaps;
-    const SimulatedPair pair = simulatePair(options);
-    const auto green = std::count_if(pair.uav.rgb.begin(), pair.uav.rgb.end(),
-                                     [](Rgb c) { return 2 * c.g - c.r - c.b > 25; });
-    return static_cast<double>(green) / static_cast<double>(pair.uav.size());
+    return greenShare(SimulatedField(options).uav());
   };
-  const double dense = greenShare(0.0);
-  const double sparse = greenShare(0.7);
+  const double dense = shareAt(0.0);
+  const double sparse = shareAt(0.7);
   EXPECT_GT(dense, 0.3);
   EXPECT_LT(sparse, 0.75 * dense);
 }

@@ -2,6 +2,29 @@
 
 namespace agricolmap::simulate {
 
+void listOptions(OptionTable& t, SoilOptions& o) {
+  t.number("contrast", o.contrast, 0.0, 5.0, "",
+           "factor on the deviation of the soil's brightness");
+  t.number("brightness", o.brightness, 0.2, 3.0, "", "factor on the soil's reflectance");
+  t.number("tillage", o.tillage, 0.0, 1.0, "",
+           "deviation of brightness of stripes along the rows, which both views see");
+  t.number("stones", o.stones, 0.0, 500.0, "1/m2", "stones on the soil, which both views see");
+  t.number("straw_brightness", o.straw_brightness, 0.2, 3.0, "",
+           "factor on the reflectance of straw");
+  t.number("cover", o.cover, 0.0, 1.0, "", "share of the soil under a flat green carpet");
+}
+
+void listOptions(OptionTable& t, PlotOptions& o) {
+  t.number("length", o.length, 0.0, 200.0, "m",
+           "length of trial plots along the rows, 0 for rows without an end");
+  t.number("alley", o.alley, 0.0, 20.0, "m", "bare soil between plots along the rows");
+  t.integer("rows", o.rows, 1, 1000, "", "rows of a plot");
+  t.integer("gap_rows", o.gap_rows, 0, 100, "", "rows left out between plots side by side");
+  t.number("spread", o.spread, 0.0, 1.0, "",
+           "deviation of plant size from plot to plot; twice that of tone and ripeness");
+  t.number("mixed", o.mixed, 0.0, 1.0, "", "share of plots sown with another crop");
+}
+
 void listOptions(OptionTable& t, FieldOptions& o) {
   t.number("width", o.width, 2.0, 200.0, "m", "east-west extent of the UAV map").basic();
   t.number("height", o.height, 2.0, 200.0, "m", "north-south extent of the UAV map").basic();
@@ -15,6 +38,7 @@ void listOptions(OptionTable& t, FieldOptions& o) {
            "deviation of a plant's place along the row");
   t.number("lateral_jitter", o.lateral_jitter, 0.0, 0.5, "m",
            "deviation of a plant's place across the row");
+  t.flag("synchronous", o.synchronous, "plants of all rows side by side, as sown by satellite");
   t.number("gaps", o.gaps, 0.0, 1.0, "", "fraction of plants missing, in clusters").basic();
   t.number("gap_length", o.gap_length, 0.05, 10.0, "m", "length of a cluster of missing plants");
   t.number("row_wobble", o.row_wobble, 0.0, 1.0, "m", "deviation of the rows' slow meandering");
@@ -29,23 +53,41 @@ void listOptions(OptionTable& t, FieldOptions& o) {
   t.number("size_spread", o.size_spread, 0.0, 1.0, "", "deviation of size from plant to plant");
   t.number("growth_gradient", o.growth_gradient, 0.0, 1.0, "",
            "deviation of plant size over about 6 m");
+  t.number("tone_spread", o.tone_spread, 0.0, 5.0, "",
+           "factor on the deviation of the plants' colours");
   t.number("relief", o.relief, 0.0, 1.0, "m", "deviation of the soil's height over metres");
   t.number("slope", o.slope, 0.0, 0.3, "", "slope of the field, in a random direction");
   t.number("ridge", o.ridge, 0.0, 0.3, "m", "half height of the ridges along the rows");
   t.number("clods", o.clods, 0.0, 0.1, "m", "deviation of the soil's height over centimetres");
+  t.group("soil", o.soil);
+  t.group("plots", o.plots);
 }
 
 void listOptions(OptionTable& t, ViewOptions& o) {
   t.number("leaf_unshared", o.leaf_unshared, 0.0, 1.0, "",
            "fraction of leaves and of fine soil texture that the views do not share")
       .basic();
+  t.number("soil_kept", o.soil_kept, 0.0, 1.0, "",
+           "fraction of that soil texture that both views see nevertheless");
+  t.number("soil_contrast", o.soil_contrast, 0.0, 5.0, "",
+           "contrast of the soil in the UGV view over the UAV view's");
   t.number("wind", o.wind, 0.0, 0.3, "m", "deviation of a plant's top between the views").basic();
+  t.number("lean_deg", o.lean_deg, 0.0, 45.0, "deg",
+           "angle by which wind leans all plants, in each view its own way");
   t.number("growth", o.growth, 0.3, 3.0, "", "plant size in the UGV view over the UAV view's")
       .basic();
+  t.number("growth_spread", o.growth_spread, 0.0, 1.0, "",
+           "deviation of growth from plant to plant");
+  t.number("ripeness", o.ripeness, 0.0, 2.0, "",
+           "of the crop in the UAV view: 0 green, 1 all leaves yellow, 2 all brown");
+  t.number("ripening", o.ripening, -2.0, 2.0, "", "by how much the UGV view is riper");
   t.number("sun_hour", o.sun_hour, 6.0, 18.0, "h", "solar time of the flight");
   t.number("sun_hours", o.sun_hours, -8.0, 8.0, "h", "hours from the flight to the drive").basic();
   t.number("overcast", o.overcast, 0.0, 1.0, "", "share of light from the whole sky").basic();
   t.number("weeds_pulled", o.weeds_pulled, 0.0, 1.0, "", "fraction of weeds gone in the UGV view");
+  t.number("weeds_new", o.weeds_new, 0.0, 1.0, "", "fraction of weeds not yet in the UAV view");
+  t.number("plants_lost", o.plants_lost, 0.0, 1.0, "",
+           "fraction of the crop's plants gone in the UGV view");
 }
 
 void listOptions(OptionTable& t, ColourOptions& o) {
@@ -55,6 +97,16 @@ void listOptions(OptionTable& t, ColourOptions& o) {
   t.number("saturation", o.saturation, 0.0, 3.0, "", "1 as the scene, 0 grey");
   t.number("gradient", o.gradient, 0.0, 0.5, "", "deviation of brightness over about 5 m");
   t.number("noise", o.noise, 0.0, 60.0, "counts", "deviation per channel");
+}
+
+void listOptions(OptionTable& t, MosaicOptions& o) {
+  t.number("piece", o.piece, 1.0, 100.0, "m", "distance of the pieces' centres");
+  t.number("shift", o.shift, 0.0, 1.0, "m", "deviation of a piece's place per axis");
+  t.number("shear", o.shear, 0.0, 0.1, "", "deviation of a piece's stretch, shear and turn");
+  t.number("blur", o.blur, 0.0, 10.0, "gsd", "further blur of colours, each piece's up to this");
+  t.number("exposure", o.exposure, 0.0, 0.5, "", "deviation of a piece's brightness");
+  t.number("doubled", o.doubled, 0.0, 1.0, "", "fraction of pieces that show everything twice");
+  t.number("doubled_shift", o.doubled_shift, 0.0, 1.0, "m", "distance between the two");
 }
 
 void listOptions(OptionTable& t, UavOptions& o) {
@@ -70,6 +122,7 @@ void listOptions(OptionTable& t, UavOptions& o) {
            "fraction of the canopy's height lost besides smoothing");
   t.number("dome", o.dome, -1.0, 1.0, "m", "height error of a corner against the centre");
   t.number("holes", o.holes, 0.0, 0.5, "", "fraction of the area without points").basic();
+  t.group("mosaic", o.mosaic);
   t.group("colour", o.colour);
 }
 

@@ -10,6 +10,31 @@ namespace agricolmap::simulate {
 /// flown at twice the height.
 enum class Crop { kSoybean, kSugarBeet10m, kSugarBeet20m, kWinterWheat, kMaize };
 
+/// What the soil shows beside its clods: things that do not grow, and that both views see.
+struct SoilOptions {
+  double contrast = 1.0;          ///< factor on the deviation of the soil's brightness
+  double brightness = 1.0;        ///< factor on the soil's reflectance
+  double tillage = 0.0;           ///< deviation of brightness of stripes along the rows, fraction
+  double stones = 0.0;            ///< per m²
+  double straw_brightness = 1.0;  ///< factor on the reflectance of straw
+  double cover = 0.0;             ///< share of the soil under a flat green carpet: moss, seedlings
+};
+void listOptions(OptionTable& table, SoilOptions& options);
+
+/// A trial: plots of a few rows, sown with varieties or crops of their own, bare soil between.
+struct PlotOptions {
+  double length = 0.0;  ///< of a plot along the rows, 0: rows without an end [m]
+  double alley = 1.5;   ///< bare soil between plots along the rows [m]
+  int rows = 4;         ///< of a plot
+  int gap_rows = 0;     ///< rows left out between plots side by side
+  double spread =
+      0.0;  ///< deviation of size from plot to plant, fraction; twice of tone and ripeness
+  double mixed = 0.0;  ///< share of plots sown with another crop
+  /// Whether there are plots at all.
+  bool any() const { return length > 0.0 || gap_rows > 0 || spread > 0.0 || mixed > 0.0; }
+};
+void listOptions(OptionTable& table, PlotOptions& options);
+
 /// The field itself: where plants stand and what the soil is like.
 struct FieldOptions {
   double width = 20.0;             ///< east–west extent of the UAV map [m]
@@ -20,6 +45,7 @@ struct FieldOptions {
   double plant_spacing = 0.055;    ///< along the row [m]
   double plant_jitter = 0.25;      ///< deviation along the row, fraction of plant_spacing
   double lateral_jitter = 0.012;   ///< deviation across the row [m]
+  bool synchronous = false;        ///< plants of all rows side by side, as sown by satellite
   double gaps = 0.06;              ///< fraction of plants missing
   double gap_length = 0.4;         ///< length of a cluster of missing plants [m]
   double row_wobble = 0.03;        ///< slow meandering of the rows, deviation [m]
@@ -31,22 +57,35 @@ struct FieldOptions {
   double plant_size = 1.0;         ///< factor on the crop's usual plant size
   double size_spread = 0.18;       ///< deviation of plant size from plant to plant, fraction
   double growth_gradient = 0.15;   ///< deviation of plant size over ~6 m, fraction
+  double tone_spread = 1.0;        ///< factor on the deviation of the plants' colours
   double relief = 0.02;            ///< deviation of the soil's height over metres [m]
   double slope = 0.01;             ///< slope of the field in a random direction
   double ridge = 0.006;            ///< half height of the ridges along the rows [m]
   double clods = 0.006;            ///< deviation of the soil's height over centimetres [m]
+  SoilOptions soil;
+  PlotOptions plots;
 };
 void listOptions(OptionTable& table, FieldOptions& options);
 
 /// What is different between the two visits.
 struct ViewOptions {
   double leaf_unshared = 0.5;  ///< fraction of leaves and of fine soil texture drawn anew
+  double soil_kept = 0.0;      ///< fraction of that soil texture that both views see nevertheless
+  double soil_contrast = 1.0;  ///< contrast of the soil in the UGV view over that in the UAV view
   double wind = 0.01;          ///< deviation of a plant's top between the views [m]
-  double growth = 1.05;        ///< plant size in the UGV view over that in the UAV view
-  double sun_hour = 10.5;      ///< solar time of the flight [h]
-  double sun_hours = 1.0;      ///< hours from the flight to the drive [h]
-  double overcast = 0.3;       ///< share of light from the whole sky, 1 = no shadows
-  double weeds_pulled = 0.0;   ///< fraction of the weeds gone in the UGV view
+  double lean_deg = 0.0;  ///< angle by which wind leans all plants, in each view its own way [°]
+  double growth = 1.05;   ///< plant size in the UGV view over that in the UAV view
+  double growth_spread = 0.0;  ///< deviation of that from plant to plant, fraction
+  /// Of the crop in the UAV view: 0 green, 1 all leaves yellow, 2 all brown; between them the
+  /// oldest are ahead.
+  double ripeness = 0.0;
+  double ripening = 0.0;      ///< more of it in the UGV view
+  double sun_hour = 10.5;     ///< solar time of the flight [h]
+  double sun_hours = 1.0;     ///< hours from the flight to the drive [h]
+  double overcast = 0.3;      ///< share of light from the whole sky, 1 = no shadows
+  double weeds_pulled = 0.0;  ///< fraction of the weeds gone in the UGV view
+  double weeds_new = 0.0;     ///< fraction of the weeds that the UAV view does not have yet
+  double plants_lost = 0.0;   ///< fraction of the crop's plants gone in the UGV view
 };
 void listOptions(OptionTable& table, ViewOptions& options);
 
@@ -61,6 +100,23 @@ struct ColourOptions {
 };
 void listOptions(OptionTable& table, ColourOptions& options);
 
+/// The pieces that a drone's map is put together from, each of other pictures: polygons whose
+/// centres are about `piece` apart. `truth` follows them, as what a piece shows is shown there.
+struct MosaicOptions {
+  double piece = 6.0;           ///< distance of the pieces [m]
+  double shift = 0.0;           ///< deviation of a piece's place per axis [m]
+  double shear = 0.0;           ///< deviation of its stretch, shear and turn, each
+  double blur = 0.0;            ///< further blur of colours, each piece's from 0 to this [gsd]
+  double exposure = 0.0;        ///< deviation of its brightness, fraction
+  double doubled = 0.0;         ///< fraction of pieces that show everything twice
+  double doubled_shift = 0.05;  ///< distance between the two [m]
+  /// Whether the pieces differ in anything.
+  bool any() const {
+    return shift > 0.0 || shear > 0.0 || blur > 0.0 || exposure > 0.0 || doubled > 0.0;
+  }
+};
+void listOptions(OptionTable& table, MosaicOptions& options);
+
 /// The drone's cloud: seen from above, reconstructed from overlapping pictures.
 struct UavOptions {
   double gsd = 0.014;               ///< ground sampling distance [m]
@@ -73,6 +129,7 @@ struct UavOptions {
   double underestimate = 0.25;      ///< fraction of the canopy's height lost besides smoothing
   double dome = 0.04;               ///< height error of a corner against the centre [m]
   double holes = 0.01;              ///< fraction of the area without points
+  MosaicOptions mosaic;
   ColourOptions colour;
 };
 void listOptions(OptionTable& table, UavOptions& options);

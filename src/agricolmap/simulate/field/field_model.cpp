@@ -23,6 +23,10 @@ constexpr std::uint64_t kPatch = 18;
 constexpr std::uint64_t kStrawSeed = 19;
 constexpr std::uint64_t kRelief = 20;
 constexpr std::uint64_t kMissing = 21;
+constexpr std::uint64_t kPlot = 22;
+constexpr std::uint64_t kStoneSeed = 23;
+
+constexpr double kBiggestPlot = 1.6;  // plants over the field's
 
 constexpr double kTrackGauge = 1.8;
 constexpr double kTrackWidth = 0.36;
@@ -51,6 +55,8 @@ double reachOf(Species species) {
       return 0.16;
     case Species::kStraw:
       return 0.22;
+    case Species::kStone:
+      return 0.08;
   }
   return 0.0;
 }
@@ -93,6 +99,12 @@ FieldModel::FieldModel(Crop crop, const FieldOptions& options, std::uint64_t see
   track_offset_ = random.uniform() * options.tramline_spacing;
   const double downhill = random.uniform(0.0, 2.0 * std::numbers::pi);
   slope_ = options.slope * Eigen::Vector2d(std::cos(downhill), std::sin(downhill));
+  sown_ = {{species_, options.plant_spacing}};
+  if (options.plots.mixed <= 0.0) return;
+  for (const Crop other : {Crop::kSoybean, Crop::kSugarBeet10m, Crop::kWinterWheat, Crop::kMaize}) {
+    if (speciesOf(other) == species_) continue;
+    sown_.push_back({speciesOf(other), cropPreset(other).field.plant_spacing});
+  }
 }
 
 Eigen::Vector2d FieldModel::rowCoordinates(const Eigen::Vector2d& point) const {
@@ -131,16 +143,45 @@ bool FieldModel::missing(std::int64_t row, std::int64_t index, double u) const {
              static_cast<float>(0.4 * options_.gaps);
 }
 
-void FieldModel::addRow(std::int64_t row, double u_min, double u_max, const Window& window,
-                        double margin, std::vector<Plant>& plants) const {
-  const double spacing = options_.plant_spacing;
+FieldModel::Plot FieldModel::plotAt(std::int64_t row, double along) const {
+  Plot plot;
+  plot.species = species_;
+  const PlotOptions& plots = options_.plots;
+  if (!plots.any()) return plot;
+  std::int64_t column = 0;
+  if (plots.length > 0.0) {
+    // The beds of a trial are laid out from one end of the field.
+    const double pitch = plots.length + plots.alley;
+    const double from = along / pitch + static_cast<double>(hashUniform(seed_, kPlot, 1));
+    column = static_cast<std::int64_t>(std::floor(from));
+    plot.bare = (from - std::floor(from)) * pitch >= plots.length;
+  }
+  const std::int64_t pitch_rows = plots.rows + plots.gap_rows;
+  const auto bed = static_cast<std::int64_t>(
+      std::floor(static_cast<double>(row) / static_cast<double>(pitch_rows)));
+  plot.bare = plot.bare || row - bed * pitch_rows >= plots.rows;
+  Random random(hashBits(hashBits(seed_, kPlot), column, bed));
+  if (random.chance(plots.mixed)) plot.species = sown_[1 + random.below(sown_.size() - 1)].species;
+  plot.size = static_cast<float>(
+      std::clamp(std::exp(random.normal(plots.spread)), 1.0 / kBiggestPlot, kBiggestPlot));
+  plot.tone = static_cast<float>(random.normal(2.0 * plots.spread));
+  plot.ripeness = static_cast<float>(random.normal(2.0 * plots.spread));
+  return plot;
+}
+
+void FieldModel::addRow(std::int64_t row, const Sown& sown, double u_min, double u_max,
+                        const Window& window, double margin, std::vector<Plant>& plants) const {
+  const double spacing = sown.spacing;
   const std::int64_t pass =
       static_cast<std::int64_t>(std::floor(static_cast<double>(row) / options_.pass_rows));
   Random row_random = Random::stream(hashBits(hashBits(seed_, kPass), pass, 0), 0);
   const double pass_shift = row_random.normal(options_.pass_error);
-  const double phase = static_cast<double>(hashUniform(hashBits(seed_, kPass), row, 1));
+  const double phase =
+      options_.synchronous ? 0.0 : static_cast<double>(hashUniform(hashBits(seed_, kPass), row, 1));
   const double v0 = (static_cast<double>(row) + 0.5) * options_.row_spacing + pass_shift;
-  const std::uint64_t plant_seed = hashBits(hashBits(seed_, kPlant), row, 7);
+  const std::int64_t salt =
+      sown.species == species_ ? 7 : 8 + static_cast<std::int64_t>(sown.species);
+  const std::uint64_t plant_seed = hashBits(hashBits(seed_, kPlant), row, salt);
   const Eigen::Vector2d centre(0.5 * options_.width, 0.5 * options_.height);
   const Eigen::Rotation2Dd turn(heading_);
   const auto first = static_cast<std::int64_t>(std::floor(u_min / spacing)) - 3;
@@ -148,7 +189,8 @@ void FieldModel::addRow(std::int64_t row, double u_min, double u_max, const Wind
   for (std::int64_t index = first; index <= last; ++index) {
     const std::uint64_t id = hashBits(plant_seed, static_cast<std::uint64_t>(index));
     const double slot = (static_cast<double>(index) + phase) * spacing;
-    if (missing(row, index, slot)) continue;
+    const Plot plot = plotAt(row, slot);
+    if (plot.bare || plot.species != sown.species || missing(row, index, slot)) continue;
     Random random(id);
     const double u = slot + random.normal(options_.plant_jitter * spacing);
     // A pass follows the tractor: its rows meander together.
@@ -168,10 +210,13 @@ void FieldModel::addRow(std::int64_t row, double u_min, double u_max, const Wind
     const double spread = std::exp(random.normal(options_.size_spread));
     plant.size = static_cast<float>(options_.plant_size * std::max(0.3, gradient) *
                                     std::clamp(spread, 0.35, 1.7));
-    plant.tone = static_cast<float>(random.normal(0.4)) +
-                 0.5F * noiseAt(hashBits(seed_, kTone), point.x() / 3.0, point.y() / 3.0);
+    plant.size *= plot.size;
+    const float tone = static_cast<float>(random.normal(0.4)) +
+                       0.5F * noiseAt(hashBits(seed_, kTone), point.x() / 3.0, point.y() / 3.0);
+    plant.tone = static_cast<float>(options_.tone_spread) * tone + plot.tone;
+    plant.ripeness = plot.ripeness;
     plant.id = id;
-    plant.species = species_;
+    plant.species = sown.species;
     plants.push_back(plant);
   }
 }
@@ -192,7 +237,7 @@ void FieldModel::addRows(const Window& window, double margin, std::vector<Plant>
   const auto last =
       static_cast<std::int64_t>(std::ceil((high.y() + slack) / options_.row_spacing)) + 1;
   for (std::int64_t row = first; row <= last; ++row) {
-    addRow(row, low.x(), high.x(), window, margin, plants);
+    for (const Sown& sown : sown_) addRow(row, sown, low.x(), high.x(), window, margin, plants);
   }
 }
 
@@ -239,9 +284,14 @@ void FieldModel::addScattered(const Window& window, double margin,
       }
     }
   };
-  scatter(kStrawSeed, options_.straw, false, [](Random& random, Plant& plant) {
+  scatter(kStrawSeed, options_.straw, false, [&](Random& random, Plant& plant) {
     plant.species = Species::kStraw;
     plant.size = static_cast<float>(random.uniform(0.4, 1.4));
+    plant.brightness = static_cast<float>(options_.soil.straw_brightness);
+  });
+  scatter(kStoneSeed, options_.soil.stones, false, [](Random& random, Plant& plant) {
+    plant.species = Species::kStone;
+    plant.size = static_cast<float>(std::exp(random.uniform(-0.9, 0.5)));
   });
   scatter(kWeed, options_.weeds, true, [](Random& random, Plant& plant) {
     plant.species = random.chance(0.6) ? Species::kBroadWeed : Species::kGrassWeed;
@@ -249,11 +299,14 @@ void FieldModel::addScattered(const Window& window, double margin,
   });
 }
 
-std::vector<Plant> FieldModel::plantsIn(const Window& window, double growth) const {
+std::vector<Plant> FieldModel::plantsIn(const Window& window, double reach) const {
   std::vector<Plant> plants;
-  const double biggest = 1.6 * options_.plant_size * std::max(1.0, growth);
-  addScattered(window, reachOf(Species::kStraw) * std::max(1.0, growth), plants);
-  addRows(window, reachOf(species_) * biggest, plants);
+  double farthest = 0.0;
+  for (const Sown& sown : sown_) farthest = std::max(farthest, reachOf(sown.species));
+  if (options_.plots.any()) farthest *= kBiggestPlot;
+  const double biggest = 1.6 * options_.plant_size * std::max(1.0, reach);
+  addScattered(window, reachOf(Species::kStraw) * std::max(1.0, reach), plants);
+  addRows(window, farthest * biggest, plants);
   return plants;
 }
 

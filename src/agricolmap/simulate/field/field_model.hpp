@@ -20,13 +20,23 @@ enum class Species : std::uint8_t {
   kBroadWeed,
   kGrassWeed,
   kStraw,
+  kStone,
 };
+inline bool isWeed(Species species) {
+  return species == Species::kBroadWeed || species == Species::kGrassWeed;
+}
+/// Neither straw nor stone.
+inline bool grows(Species species) {
+  return species != Species::kStraw && species != Species::kStone;
+}
 
-/// One plant (or piece of straw) and what is the same in both views.
+/// One plant (or piece of straw, or stone) and what is the same in both views.
 struct Plant {
   Eigen::Vector2f position;  ///< field frame [m]
   float size = 1.0F;         ///< factor on the species' usual size
   float tone = 0.0F;         ///< about −1…1: darker or more yellow than usual
+  float ripeness = 0.0F;     ///< how much riper than the field, see ViewOptions::ripeness
+  float brightness = 1.0F;   ///< factor on its reflectance
   std::uint64_t id = 0;      ///< seed of what is drawn for it
   Species species = Species::kSoybean;
 };
@@ -47,8 +57,9 @@ class FieldModel {
   const FieldOptions& options() const { return options_; }
   std::uint64_t seed() const { return seed_; }
 
-  /// All plants whose leaves may reach into the window, sizes multiplied by up to `growth`.
-  std::vector<Plant> plantsIn(const Window& window, double growth) const;
+  /// All plants whose leaves may reach into the window, when they reach up to `reach` times as far
+  /// as usual for their size.
+  std::vector<Plant> plantsIn(const Window& window, double reach) const;
 
   /// Coordinates along and across the rows [m].
   Eigen::Vector2d rowCoordinates(const Eigen::Vector2d& point) const;
@@ -60,11 +71,26 @@ class FieldModel {
  private:
   void addRows(const Window& window, double margin, std::vector<Plant>& plants) const;
   void addScattered(const Window& window, double margin, std::vector<Plant>& plants) const;
-  void addRow(std::int64_t row, double u_min, double u_max, const Window& window, double margin,
-              std::vector<Plant>& plants) const;
+  /// A crop and the distance of its plants along the row [m].
+  struct Sown {
+    Species species;
+    double spacing;
+  };
+  /// The part of the field that a place lies in.
+  struct Plot {
+    bool bare = false;
+    Species species = Species::kSoybean;
+    float size = 1.0F;  ///< factor
+    float tone = 0.0F;
+    float ripeness = 0.0F;
+  };
+  void addRow(std::int64_t row, const Sown& sown, double u_min, double u_max, const Window& window,
+              double margin, std::vector<Plant>& plants) const;
+  Plot plotAt(std::int64_t row, double along) const;
   bool missing(std::int64_t row, std::int64_t index, double u) const;
 
   Species species_;
+  std::vector<Sown> sown_;  ///< all crops of the field, the usual one first
   FieldOptions options_;
   std::uint64_t seed_;
   double heading_;

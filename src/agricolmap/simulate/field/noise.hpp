@@ -46,6 +46,19 @@ inline float noiseAt(std::uint64_t seed, double x, double y) {
   return low * (1.0F - sy) + high * sy;
 }
 
+/// What a standard normal deviate exceeds with this probability; beyond all values for 0 or 1.
+inline float normalQuantile(double exceeded) {
+  if (exceeded <= 0.0) return 1e9F;
+  if (exceeded >= 1.0) return -1e9F;
+  double low = -6.0;
+  double high = 6.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(middle / std::sqrt(2.0)) > exceeded ? low : high) = middle;
+  }
+  return static_cast<float>(low);
+}
+
 /// The same field as noiseAt, with the lattice of a region tabulated: for rasters.
 class NoiseTile {
  public:

@@ -10,6 +10,8 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kGoldenAngle = 2.39996F;
+constexpr double kMostGrowth = 1.6;  // of a plant over the field's
+constexpr std::uint64_t kGrowthSalt = 61;
 
 float normal(Random& random, double sigma) { return static_cast<float>(random.normal(sigma)); }
 float uniform(Random& random, double low, double high) {
@@ -32,6 +34,7 @@ float usualHeight(Species species) {
     case Species::kGrassWeed:
       return 0.10F;
     case Species::kStraw:
+    case Species::kStone:
       return 1.0F;
   }
   return 1.0F;
@@ -52,6 +55,7 @@ int leafCount(Species species, Random& random) {
     case Species::kGrassWeed:
       return 5 + static_cast<int>(random.below(6));
     case Species::kStraw:
+    case Species::kStone:
       return 1;
   }
   return 0;
@@ -73,6 +77,8 @@ std::array<float, 3> usualAlbedo(Species species) {
       return {0.095F, 0.185F, 0.060F};
     case Species::kStraw:
       return {0.420F, 0.360F, 0.260F};
+    case Species::kStone:
+      return {0.450F, 0.430F, 0.390F};
   }
   return {};
 }
@@ -164,6 +170,18 @@ Leaf strawPiece(Random& r) {
   return leaf;
 }
 
+/// A pebble: an oval that arches over the soil.
+Leaf stone(Random& r) {
+  Leaf leaf;
+  leaf.azimuth = uniform(r, 0.0, 2.0 * std::numbers::pi);
+  leaf.elevation = 0.6F;
+  leaf.bend = 1.2F;
+  leaf.length = uniform(r, 0.012, 0.04);
+  leaf.width = uniform(r, 0.6, 0.95) * leaf.length;
+  leaf.base_z = 0.002F;
+  return leaf;
+}
+
 Leaf drawLeaf(Species species, Random& random, int index, int count, float phase) {
   const float order = static_cast<float>(index + 1) / static_cast<float>(count);
   const float around = phase + kGoldenAngle * static_cast<float>(index);
@@ -181,11 +199,47 @@ Leaf drawLeaf(Species species, Random& random, int index, int count, float phase
       return weedLeaf(random, species, around);
     case Species::kStraw:
       return strawPiece(random);
+    case Species::kStone:
+      return stone(random);
   }
   return {};
 }
 
+/// Growth of a plant over the field's.
+double ownGrowth(const Plant& plant, double spread) {
+  if (spread <= 0.0) return 1.0;
+  Random random(hashBits(plant.id, kGrowthSalt));
+  return std::clamp(std::exp(random.normal(spread)), 1.0 / kMostGrowth, kMostGrowth);
+}
+
+/// How far a leaf has turned: the lower ones first, each in a time of its own.
+float ripenessOf(const Plant& plant, const VisitPlants& visit, std::uint64_t leaf, float order) {
+  if (visit.ripeness <= 0.0 || !grows(plant.species) || isWeed(plant.species)) return 0.0F;
+  const float turns = 0.3F * order + 0.45F * hashUniform(leaf, 1, 5);
+  return std::max(0.0F, static_cast<float>(visit.ripeness) + plant.ripeness - turns);
+}
+
 }  // namespace
+
+double VisitPlants::reach() const {
+  // No plant is higher than one and a half times its reach.
+  return std::max(1.0, growth) * (growth_spread > 0.0 ? kMostGrowth : 1.0) *
+         (1.0 + 1.5 * lean.norm());
+}
+
+std::array<float, 3> Foliage::albedoOf(const Leaf& leaf) const {
+  constexpr std::array<float, 3> kYellow = {0.54F, 0.45F, 0.06F};
+  constexpr std::array<float, 3> kBrown = {0.21F, 0.15F, 0.09F};
+  const float yellow = std::clamp(4.0F * leaf.ripe, 0.0F, 1.0F);
+  const float brown = std::clamp(4.0F * leaf.ripe - 4.0F, 0.0F, 1.0F);
+  std::array<float, 3> mixed = albedo;
+  for (std::size_t k = 0; k < 3; ++k) {
+    mixed[k] += yellow * (kYellow[k] - mixed[k]);
+    mixed[k] += brown * (kBrown[k] - mixed[k]);
+    mixed[k] *= leaf.shade;
+  }
+  return mixed;
+}
 
 Foliage growFoliage(const Plant& plant, const VisitPlants& visit) {
   Random shared(plant.id);
@@ -193,13 +247,14 @@ Foliage growFoliage(const Plant& plant, const VisitPlants& visit) {
   Foliage foliage;
   foliage.count = leafCount(plant.species, shared);
   const float phase = uniform(shared, 0.0, 2.0 * std::numbers::pi);
-  const bool grows = plant.species != Species::kStraw;
-  const float size = plant.size * (grows ? static_cast<float>(visit.growth) : 1.0F);
+  const bool alive = grows(plant.species);
+  const double growth = alive ? visit.growth * ownGrowth(plant, visit.growth_spread) : 1.0;
+  const float size = plant.size * static_cast<float>(growth);
   const float height = usualHeight(plant.species) * size;
   const Eigen::Vector2f sway(normal(visitor, visit.wind), normal(visitor, visit.wind));
   for (int i = 0; i < foliage.count; ++i) {
     const std::uint64_t leaf_seed = shared.bits();
-    const bool redrawn = grows && shared.chance(visit.leaf_unshared);
+    const bool redrawn = alive && shared.chance(visit.leaf_unshared);
     Random own = redrawn ? Random::stream(visit.seed, leaf_seed) : Random(leaf_seed);
     // A leaf drawn anew may point anywhere: it stands for another one that this view sees.
     const float turned = redrawn && plant.species != Species::kMaize
@@ -207,6 +262,10 @@ Foliage growFoliage(const Plant& plant, const VisitPlants& visit) {
                              : phase;
     Leaf leaf = drawLeaf(plant.species, own, i, foliage.count, turned);
     const float age = normal(own, 0.10);
+    const float order = static_cast<float>(i + 1) / static_cast<float>(foliage.count);
+    leaf.ripe = ripenessOf(plant, visit, leaf_seed, order);
+    // Dry leaves shrivel.
+    leaf.width *= 1.0F - 0.6F * std::clamp(leaf.ripe - 1.0F, 0.0F, 1.0F);
     leaf.length *= size;
     leaf.width *= size;
     leaf.base_z *= size;
@@ -216,6 +275,7 @@ Foliage growFoliage(const Plant& plant, const VisitPlants& visit) {
     const float flutter = 0.4F * static_cast<float>(visit.wind);
     leaf.shift = std::min(1.0F, top / height) *
                  (sway + flutter * Eigen::Vector2f(normal(visitor, 1.0), normal(visitor, 1.0)));
+    if (alive) leaf.shift += top * visit.lean.cast<float>();
     foliage.leaves[static_cast<std::size_t>(i)] = leaf;
   }
   foliage.albedo = usualAlbedo(plant.species);
@@ -224,151 +284,8 @@ Foliage growFoliage(const Plant& plant, const VisitPlants& visit) {
   foliage.albedo[0] *= std::exp(0.22F * tone);
   foliage.albedo[1] *= std::exp(0.13F * tone);
   foliage.albedo[2] *= std::exp(0.05F * tone);
+  for (float& a : foliage.albedo) a *= plant.brightness;
   return foliage;
-}
-
-/// One surface to draw, in window coordinates [m].
-struct LeafPainter::Ribbon {
-  Eigen::Vector3f base;
-  float azimuth = 0.0F;
-  float elevation = 0.0F;
-  float bend = 0.0F;
-  float length = 0.0F;
-  float half_width = 0.0F;
-  float roll = 0.0F;
-  LeafShape shape = LeafShape::kOval;
-  std::array<float, 3> albedo{};
-};
-
-LeafPainter::LeafPainter(Canvas& canvas, const Tile& tile, const Eigen::Vector3f& sun_in_window)
-    : canvas_(&canvas),
-      tile_(tile),
-      sun_(sun_in_window),
-      heading_(static_cast<float>(canvas.window.heading)),
-      cell_(static_cast<float>(canvas.window.cell)) {}
-
-namespace {
-
-/// Half width at t in [0, 1] over the greatest.
-float profile(LeafShape shape, float t) {
-  switch (shape) {
-    case LeafShape::kOval:
-    case LeafShape::kTrifoliate: {
-      const float s = 2.0F * t - 0.9F;
-      return std::sqrt(std::max(0.0F, 1.0F - s * s * (s > 0.0F ? 0.83F : 1.0F)));
-    }
-    case LeafShape::kBlade:
-      return std::min(1.0F, 0.35F + 4.0F * t) * std::sqrt(std::max(0.0F, 1.0F - t));
-    case LeafShape::kStraw:
-      return 1.0F;
-  }
-  return 0.0F;
-}
-
-/// End of a rod of the given length that bends down on its way.
-Eigen::Vector3f alongRod(const Eigen::Vector3f& base, float azimuth, float elevation,
-                         float length) {
-  return base + length * Eigen::Vector3f(std::cos(elevation) * std::cos(azimuth),
-                                         std::cos(elevation) * std::sin(azimuth),
-                                         std::sin(elevation));
-}
-
-}  // namespace
-
-void LeafPainter::paintRibbon(const Ribbon& ribbon) {
-  const float step = 0.75F * cell_;
-  const int steps = std::max(1, static_cast<int>(std::ceil(ribbon.length / step)));
-  const float ds = ribbon.length / static_cast<float>(steps);
-  const float ca = std::cos(ribbon.azimuth);
-  const float sa = std::sin(ribbon.azimuth);
-  const float cr = std::cos(ribbon.roll);
-  const float sr = std::sin(ribbon.roll);
-  const std::array<std::uint8_t, 3> albedo = {encodeAlbedo(ribbon.albedo[0]),
-                                              encodeAlbedo(ribbon.albedo[1]),
-                                              encodeAlbedo(ribbon.albedo[2])};
-  // The direction of the axis turns by a constant angle per step.
-  float ce = std::cos(ribbon.elevation);
-  float se = std::sin(ribbon.elevation);
-  const float turn_c = std::cos(ribbon.bend / static_cast<float>(steps));
-  const float turn_s = std::sin(ribbon.bend / static_cast<float>(steps));
-  Eigen::Vector3f p = ribbon.base;
-  const float to_cell = 1.0F / cell_;
-  for (int i = 0; i < steps; ++i) {
-    const float t = (static_cast<float>(i) + 0.5F) / static_cast<float>(steps);
-    p += ds * Eigen::Vector3f(ce * ca, ce * sa, se);
-    // Across the leaf, rolled about its axis; the normal completes the pair.
-    const Eigen::Vector3f across(-sa * cr - se * ca * sr, ca * cr - se * sa * sr, ce * sr);
-    const Eigen::Vector3f facing(sa * sr - se * ca * cr, -ca * sr - se * sa * cr, ce * cr);
-    const float cosine = std::abs(facing.dot(sun_));
-    const auto light =
-        static_cast<std::uint8_t>(1.0F + 254.0F * std::min(1.0F, 0.15F + 0.85F * cosine));
-    const float half = ribbon.half_width * profile(ribbon.shape, t);
-    const int side = static_cast<int>(std::ceil(half / step - 0.3F));
-    const float dw = side > 0 ? half / static_cast<float>(side) : 0.0F;
-    for (int k = -side; k <= side; ++k) {
-      const Eigen::Vector3f q = p + (static_cast<float>(k) * dw) * across;
-      const int col = static_cast<int>(std::floor(q.x() * to_cell));
-      const int row = static_cast<int>(std::floor(q.y() * to_cell));
-      if (col < tile_.col0 || col >= tile_.col1 || row < tile_.row0 || row >= tile_.row1) continue;
-      Cell& cell = canvas_->cells(row, col);
-      if (q.z() <= cell.z) continue;
-      cell.z = q.z();
-      cell.albedo = albedo;
-      cell.light = light;
-    }
-    const float next_c = ce * turn_c + se * turn_s;
-    se = se * turn_c - ce * turn_s;
-    ce = next_c;
-  }
-}
-
-void LeafPainter::paintLeaf(const Leaf& leaf, const Eigen::Vector3f& base,
-                            const std::array<float, 3>& albedo) {
-  Ribbon ribbon;
-  ribbon.base = base;
-  ribbon.azimuth = leaf.azimuth - heading_;
-  ribbon.elevation = leaf.elevation;
-  ribbon.bend = leaf.bend;
-  ribbon.roll = leaf.roll;
-  ribbon.shape = leaf.shape;
-  ribbon.albedo = albedo;
-  const float stalk = leaf.stalk * leaf.length;
-  if (stalk > 0.0F) {
-    Ribbon stem = ribbon;
-    stem.shape = LeafShape::kStraw;
-    stem.length = stalk;
-    stem.bend = 0.0F;
-    stem.half_width = 0.04F * leaf.width;
-    for (float& a : stem.albedo) a *= 1.25F;
-    paintRibbon(stem);
-    ribbon.base = alongRod(base, ribbon.azimuth, leaf.elevation, stalk);
-  }
-  ribbon.length = leaf.length - stalk;
-  ribbon.half_width = 0.5F * leaf.width;
-  if (leaf.shape != LeafShape::kTrifoliate) {
-    paintRibbon(ribbon);
-    return;
-  }
-  // Three leaflets that lie flatter than the stalk.
-  ribbon.elevation = 0.3F * (leaf.elevation - 0.5F);
-  for (const float turn : {0.0F, 1.35F, -1.35F}) {
-    Ribbon leaflet = ribbon;
-    leaflet.azimuth += turn;
-    leaflet.roll = turn == 0.0F ? leaf.roll : leaf.roll + 0.2F * turn;
-    paintRibbon(leaflet);
-  }
-}
-
-void LeafPainter::paint(const Plant& plant, const Foliage& foliage, float soil) {
-  const Eigen::Vector2f place = canvas_->window.local(plant.position.cast<double>()).cast<float>();
-  const Eigen::Matrix2f turn = Eigen::Rotation2Df(-heading_).toRotationMatrix();
-  for (int i = 0; i < foliage.count; ++i) {
-    const Leaf& leaf = foliage.leaves[static_cast<std::size_t>(i)];
-    const Eigen::Vector2f moved = place + turn * leaf.shift;
-    std::array<float, 3> albedo = foliage.albedo;
-    for (float& a : albedo) a *= leaf.shade;
-    paintLeaf(leaf, {moved.x(), moved.y(), soil + leaf.base_z}, albedo);
-  }
 }
 
 }  // namespace agricolmap::simulate

@@ -1,4 +1,4 @@
-// Plants made of leaves: drawn from random numbers, per view, and rasterised from above.
+// Plants made of leaves: drawn from random numbers, per view.
 #pragma once
 
 #include <array>
@@ -10,10 +10,16 @@ namespace agricolmap::simulate {
 
 /// What one visit changes about plants.
 struct VisitPlants {
-  std::uint64_t seed = 0;      ///< of what this visit draws for itself
-  double leaf_unshared = 0.0;  ///< fraction of leaves drawn from it
-  double growth = 1.0;         ///< factor on sizes
-  double wind = 0.0;           ///< deviation of a plant's top per axis [m]
+  std::uint64_t seed = 0;                          ///< of what this visit draws for itself
+  double leaf_unshared = 0.0;                      ///< fraction of leaves drawn from it
+  double growth = 1.0;                             ///< factor on sizes
+  double wind = 0.0;                               ///< deviation of a plant's top per axis [m]
+  double growth_spread = 0.0;                      ///< deviation of growth from plant to plant
+  double ripeness = 0.0;                           ///< see ViewOptions::ripeness
+  Eigen::Vector2d lean = Eigen::Vector2d::Zero();  ///< of all plants, per height above the soil
+
+  /// How far plants reach at most, over what is usual for their size.
+  double reach() const;
 };
 
 enum class LeafShape : std::uint8_t { kOval, kBlade, kTrifoliate, kStraw };
@@ -31,6 +37,7 @@ struct Leaf {
   float base_z = 0.0F;                              ///< above the soil [m]
   Eigen::Vector2f shift = Eigen::Vector2f::Zero();  ///< wind at the leaf's height [m]
   float shade = 1.0F;  ///< reflectance of this leaf against the plant's
+  float ripe = 0.0F;   ///< 0 green, from 0.25 on yellow, from 1.25 on brown
 };
 
 /// Up to kMaxLeaves leaves.
@@ -39,33 +46,11 @@ struct Foliage {
   std::array<Leaf, kMaxLeaves> leaves;
   int count = 0;
   std::array<float, 3> albedo{};
+
+  /// Reflectance of one of its leaves.
+  std::array<float, 3> albedoOf(const Leaf& leaf) const;
 };
 
 Foliage growFoliage(const Plant& plant, const VisitPlants& visit);
-
-/// Draws leaves into a rectangle of the canvas's cells, keeping the higher surface in each.
-class LeafPainter {
- public:
-  struct Tile {
-    int row0 = 0;
-    int row1 = 0;
-    int col0 = 0;
-    int col1 = 0;
-  };
-  LeafPainter(Canvas& canvas, const Tile& tile, const Eigen::Vector3f& sun_in_window);
-  /// `soil` is the soil's height at the plant [m].
-  void paint(const Plant& plant, const Foliage& foliage, float soil);
-
- private:
-  struct Ribbon;
-  void paintRibbon(const Ribbon& ribbon);
-  void paintLeaf(const Leaf& leaf, const Eigen::Vector3f& base, const std::array<float, 3>& albedo);
-
-  Canvas* canvas_;
-  Tile tile_;
-  Eigen::Vector3f sun_;
-  float heading_;
-  float cell_;
-};
 
 }  // namespace agricolmap::simulate

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/simulate/field/leaf_painter.hpp"
 #include "agricolmap/simulate/field/light.hpp"
-#include "agricolmap/simulate/field/plant.hpp"
 
 namespace agricolmap::simulate {
 
@@ -20,6 +21,8 @@ constexpr std::uint64_t kClods = 41;
 constexpr std::uint64_t kTools = 51;
 constexpr std::uint64_t kMoisture = 61;
 constexpr std::uint64_t kFine = 71;
+constexpr std::uint64_t kMarks = 81;
+constexpr std::uint64_t kCover = 91;
 
 /// The noise fields of a tile's soil. Coarse ones are the field's; fine ones are mixed from the
 /// field's and the visit's so that `unshared` of their variance is the visit's own.
@@ -27,8 +30,12 @@ class SoilPainter {
  public:
   SoilPainter(const FieldModel& field, const Visit& visit, const Window& window, const Tile& tile)
       : clod_height_(static_cast<float>(field.options().clods)),
-        shared_(static_cast<float>(std::sqrt(1.0 - visit.leaf_unshared))),
-        own_(static_cast<float>(std::sqrt(visit.leaf_unshared))),
+        brightness_(static_cast<float>(field.options().soil.brightness)),
+        contrast_(static_cast<float>(field.options().soil.contrast * visit.soil_contrast)),
+        tillage_(static_cast<float>(field.options().soil.tillage)),
+        cover_(normalQuantile(field.options().soil.cover)),
+        shared_(static_cast<float>(std::sqrt(1.0 - visit.soil_unshared))),
+        own_(static_cast<float>(std::sqrt(visit.soil_unshared))),
         box_(boundsOf(window, tile, [](const Eigen::Vector2d& p) { return p; })),
         row_box_(boundsOf(window, tile,
                           [&](const Eigen::Vector2d& p) { return field.rowCoordinates(p); })),
@@ -45,7 +52,19 @@ class SoilPainter {
         fine_(make(field.seed() + kFine, 0.025)),
         own_fine_(make(visit.seed + kFine, 0.025)),
         tint_(make(field.seed() + kFine + 1, 0.07)),
-        own_tint_(make(visit.seed + kFine + 1, 0.07)) {}
+        own_tint_(make(visit.seed + kFine + 1, 0.07)) {
+    if (tillage_ > 0.0F) {
+      marks_.emplace(hashBits(field.seed() + kMarks, 1), row_box_.low.x() / kMarkLength,
+                     row_box_.high.x() / kMarkLength, row_box_.low.y() / kMarkWidth,
+                     row_box_.high.y() / kMarkWidth);
+    }
+    if (field.options().soil.cover > 0.0) {
+      carpet_.emplace(make(field.seed() + kCover, 0.30));
+      tufts_.emplace(make(field.seed() + kCover + 2, 0.09));
+      sprigs_.emplace(make(field.seed() + kCover + 1, 0.03));
+      own_sprigs_.emplace(make(visit.seed + kCover + 1, 0.03));
+    }
+  }
 
   /// `uv` are the point's coordinates along and across the rows, `smooth` is the soil's height
   /// without clods, `track` 1 in wheel tracks.
@@ -63,13 +82,17 @@ class SoilPainter {
     cell.z = ground;
     cell.light = kBare;
     // Dry tops are lighter than the moist soil between.
-    const float brightness = 0.14F * at(moisture_, point, 1.7) + 0.08F * at(patches_, point, 0.35) +
-                             0.07F * bumps + 0.10F * mix(fine_, own_fine_, point, 0.025) -
-                             0.12F * track;
+    float brightness = 0.14F * at(moisture_, point, 1.7) + 0.08F * at(patches_, point, 0.35) +
+                       0.07F * bumps + 0.10F * mix(fine_, own_fine_, point, 0.025) - 0.12F * track;
+    if (marks_) {
+      brightness += tillage_ * (*marks_)((1.0 / kMarkLength) * uv.x(), (1.0 / kMarkWidth) * uv.y());
+    }
     const float tint = 0.03F * mix(tint_, own_tint_, point, 0.07);
-    const float albedo = std::max(0.3F, 1.0F + brightness);
-    cell.albedo = {encodeAlbedo(0.235F * albedo * (1.0F + tint)), encodeAlbedo(0.185F * albedo),
-                   encodeAlbedo(0.140F * albedo * (1.0F - tint))};
+    const float albedo = brightness_ * std::max(0.3F, 1.0F + contrast_ * brightness);
+    std::array<float, 3> soil = {0.235F * albedo * (1.0F + tint), 0.185F * albedo,
+                                 0.140F * albedo * (1.0F - tint)};
+    if (carpet_) grow(point, soil);
+    cell.albedo = {encodeAlbedo(soil[0]), encodeAlbedo(soil[1]), encodeAlbedo(soil[2])};
   }
 
  private:
@@ -77,6 +100,17 @@ class SoilPainter {
     Eigen::Vector2d low;
     Eigen::Vector2d high;
   };
+  /// The green carpet, in patches with ragged borders.
+  void grow(const Eigen::Vector2d& point, std::array<float, 3>& soil) const {
+    const float sprig = mix(*sprigs_, *own_sprigs_, point, 0.03);
+    const float thick =
+        0.6F * at(*carpet_, point, 0.30) + 0.6F * at(*tufts_, point, 0.09) + 0.5F * sprig;
+    const float covered = std::clamp(0.5F + 2.5F * (thick - cover_), 0.0F, 1.0F);
+    constexpr std::array<float, 3> kGreen = {0.080F, 0.145F, 0.045F};
+    for (std::size_t k = 0; k < 3; ++k) {
+      soil[k] += covered * ((1.0F + 0.2F * sprig) * kGreen[k] - soil[k]);
+    }
+  }
   template <typename Map>
   static Bounds boundsOf(const Window& window, const Tile& tile, const Map& map) {
     Bounds box{Eigen::Vector2d::Constant(1e30), Eigen::Vector2d::Constant(-1e30)};
@@ -107,7 +141,13 @@ class SoilPainter {
 
   static constexpr double kStripeLength = 1.5;  // of the harrow's marks [m]
   static constexpr double kStripeWidth = 0.07;
+  static constexpr double kMarkLength = 4.0;  // of what tines and wheels leave [m]
+  static constexpr double kMarkWidth = 0.05;
   float clod_height_;
+  float brightness_;
+  float contrast_;
+  float tillage_;
+  float cover_;
   float shared_;
   float own_;
   Bounds box_;
@@ -124,6 +164,11 @@ class SoilPainter {
   NoiseTile own_fine_;
   NoiseTile tint_;
   NoiseTile own_tint_;
+  std::optional<NoiseTile> marks_;
+  std::optional<NoiseTile> carpet_;
+  std::optional<NoiseTile> tufts_;
+  std::optional<NoiseTile> sprigs_;
+  std::optional<NoiseTile> own_sprigs_;
 };
 
 /// What varies slowly, on every fourth cell: ridges and tracks are wider.
@@ -191,14 +236,14 @@ std::vector<Tile> tilesOf(const Window& window) {
 /// Indices of the plants that may reach into each tile, in order.
 std::vector<std::vector<std::uint32_t>> plantsPerTile(const std::vector<Plant>& plants,
                                                       const std::vector<Tile>& tiles,
-                                                      const Window& window, double growth) {
+                                                      const Window& window, double farther) {
   std::vector<std::vector<std::uint32_t>> lists(tiles.size());
   for (std::size_t i = 0; i < plants.size(); ++i) {
     const Plant& plant = plants[i];
     const Eigen::Vector2d at = window.local(plant.position.cast<double>()) / window.cell;
     const double reach = 0.03 / window.cell + reachOf(plant.species) *
-                                                  static_cast<double>(plant.size) *
-                                                  std::max(1.0, growth) / window.cell;
+                                                  static_cast<double>(plant.size) * farther /
+                                                  window.cell;
     for (std::size_t k = 0; k < tiles.size(); ++k) {
       const Tile& tile = tiles[k];
       if (at.x() + reach >= tile.col0 && at.x() - reach <= tile.col1 &&
@@ -210,9 +255,13 @@ std::vector<std::vector<std::uint32_t>> plantsPerTile(const std::vector<Plant>& 
   return lists;
 }
 
-bool pulled(const Plant& plant, const Visit& visit) {
-  if (plant.species != Species::kBroadWeed && plant.species != Species::kGrassWeed) return false;
-  return hashUniform(plant.id, 1, 2) < static_cast<float>(visit.weeds_pulled);
+/// Whether this visit does not find the plant.
+bool gone(const Plant& plant, const Visit& visit) {
+  const auto drawn = [&](std::int64_t why, double share) {
+    return hashUniform(plant.id, 1, why) < static_cast<float>(share);
+  };
+  if (isWeed(plant.species)) return drawn(2, visit.weeds_pulled) || drawn(3, visit.weeds_new);
+  return grows(plant.species) && drawn(4, visit.plants_lost);
 }
 
 }  // namespace
@@ -222,24 +271,23 @@ Canvas renderVisit(const FieldModel& field, const Visit& visit, const Window& wi
   canvas.window = window;
   canvas.cells = Raster<Cell>(window.rows, window.cols);
   canvas.ground = Raster<float>(window.rows, window.cols);
-  std::vector<Plant> plants = field.plantsIn(window, visit.growth);
-  std::erase_if(plants, [&](const Plant& plant) { return pulled(plant, visit); });
+  std::vector<Plant> plants = field.plantsIn(window, visit.reach());
+  std::erase_if(plants, [&](const Plant& plant) { return gone(plant, visit); });
   const SmoothSoil smooth = smoothSoil(field, window);
   const std::vector<Tile> tiles = tilesOf(window);
   const std::vector<std::vector<std::uint32_t>> lists =
-      plantsPerTile(plants, tiles, window, visit.growth);
+      plantsPerTile(plants, tiles, window, visit.reach());
   const Eigen::Vector3d sun = sunDirection(visit.solar_hour);
   const Eigen::Vector2d flat = Eigen::Rotation2Dd(-window.heading) * sun.head<2>();
   const Eigen::Vector3f sun_in_window(static_cast<float>(flat.x()), static_cast<float>(flat.y()),
                                       static_cast<float>(sun.z()));
-  const VisitPlants change{visit.seed, visit.leaf_unshared, visit.growth, visit.wind};
   parallelFor(tiles.size(), [&](std::size_t k) {
     paintSoil(field, visit, smooth, tiles[k], canvas);
     LeafPainter painter(canvas, tiles[k], sun_in_window);
     for (const std::uint32_t i : lists[k]) {
       const Plant& plant = plants[i];
       const auto soil = static_cast<float>(field.soilHeight(plant.position.cast<double>()));
-      painter.paint(plant, growFoliage(plant, change), soil);
+      painter.paint(plant, growFoliage(plant, visit), soil);
     }
   });
   canvas.leaf_depth = leafDepthOf(field.species());

@@ -2,16 +2,17 @@
 #pragma once
 
 #include "agricolmap/simulate/field/field_model.hpp"
+#include "agricolmap/simulate/field/plant.hpp"
 
 namespace agricolmap::simulate {
 
 /// What one visit changes. The UAV's is the first, the UGV's the second.
-struct Visit {
-  std::uint64_t seed = 0;      ///< of what this visit draws for itself
-  double leaf_unshared = 0.0;  ///< fraction of leaves and fine soil texture drawn from it
-  double growth = 1.0;         ///< factor on plant sizes
-  double wind = 0.0;           ///< deviation of a plant's top per axis [m]
+struct Visit : VisitPlants {
+  double soil_unshared = 0.0;  ///< fraction of fine soil texture drawn from its seed
+  double soil_contrast = 1.0;  ///< factor on the deviation of the soil's brightness
   double weeds_pulled = 0.0;   ///< fraction of weeds gone
+  double weeds_new = 0.0;      ///< fraction of weeds not there yet
+  double plants_lost = 0.0;    ///< fraction of the crop's plants gone
   double solar_hour = 12.0;    ///< [h]
   double overcast = 0.3;       ///< the sky's share of light
 };

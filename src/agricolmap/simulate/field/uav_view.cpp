@@ -4,6 +4,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/simulate/field/colour_response.hpp"
+#include "agricolmap/simulate/field/mosaic_pieces.hpp"
 #include "agricolmap/simulate/field/noise.hpp"
 #include "agricolmap/simulate/field/views.hpp"
 
@@ -66,20 +67,6 @@ Reconstruction averageBlocks(const Canvas& canvas, const UavOptions& options, st
   return result;
 }
 
-/// Where the matching found nothing: patches of about 20 cm. The noise's distribution is close to
-/// normal, so the threshold for a fraction is its quantile.
-float holeThreshold(double fraction) {
-  if (fraction <= 0.0) return 1e9F;
-  // Inverse of the normal tail by bisection on erfc.
-  double low = -6.0;
-  double high = 6.0;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(middle / std::sqrt(2.0)) > fraction ? low : high) = middle;
-  }
-  return static_cast<float>(low);
-}
-
 class Sampler {
  public:
   Sampler(const Canvas& canvas, const UavOptions& options, std::uint64_t seed)
@@ -89,10 +76,15 @@ class Sampler {
         window_(&canvas.window),
         scene_(averageBlocks(canvas, options, seed)),
         colour_(options.colour, scene_.mean_light, seed),
-        hole_(holeThreshold(options.holes)) {
+        pieces_(options.mosaic, {canvas.window.width(), canvas.window.height()}, seed),
+        hole_(normalQuantile(options.holes)) {
     blurRaster(scene_.z, options.smoothing / scene_.cell);
     for (Raster<float>& channel : scene_.light)
       blurRaster(channel, options.colour_blur * options.gsd / scene_.cell);
+    if (options.mosaic.blur <= 0.0) return;
+    soft_ = scene_.light;
+    for (Raster<float>& channel : soft_)
+      blurRaster(channel, options.mosaic.blur * options.gsd / scene_.cell);
   }
 
   int rows() const { return static_cast<int>(std::ceil(window_->height() / options_->gsd)); }
@@ -127,11 +119,13 @@ class Sampler {
             std::min(static_cast<int>(local.x() / window_->cell), window_->cols - 1))) {
       return;
     }
+    // Where the matching found nothing: patches of about 20 cm.
     const float hole = noiseAt(seed_ + 9, local.x() / 0.25, local.y() / 0.25) * 0.8F +
                        noiseAt(seed_ + 10, local.x() / 0.06, local.y() / 0.06) * 0.4F;
     if (hole > hole_) return;
-    const auto col = static_cast<float>(local.x() / scene_.cell - 0.5);
-    const auto row = static_cast<float>(local.y() / scene_.cell - 0.5);
+    const Eigen::Vector2d shown = local - pieces_.displacement(local);
+    const auto col = static_cast<float>(shown.x() / scene_.cell - 0.5);
+    const auto row = static_cast<float>(shown.y() / scene_.cell - 0.5);
     const Eigen::Vector2d place = window_->field(local);
     // A dome: radial error that grows with the square of the distance from the middle.
     const Eigen::Vector2d half(0.5 * window_->width(), 0.5 * window_->height());
@@ -143,10 +137,30 @@ class Sampler {
                      random.normal(options_->height_noise);
     points.xyz.emplace_back(static_cast<float>(place.x()), static_cast<float>(place.y()),
                             static_cast<float>(z));
-    points.rgb.push_back(
-        colour_({sampleRaster(scene_.light[0], col, row), sampleRaster(scene_.light[1], col, row),
-                 sampleRaster(scene_.light[2], col, row)},
-                place, random));
+    const std::array<float, 3> light =
+        pieces_.any() ? lightOf(pieces_.at(local), col, row) : lightAt(scene_.light, col, row);
+    points.rgb.push_back(colour_(light, place, random));
+  }
+
+  static std::array<float, 3> lightAt(const std::array<Raster<float>, 3>& light, float col,
+                                      float row) {
+    return {sampleRaster(light[0], col, row), sampleRaster(light[1], col, row),
+            sampleRaster(light[2], col, row)};
+  }
+  /// As a piece of the mosaic shows it.
+  std::array<float, 3> lightOf(const MosaicPiece& piece, float col, float row) const {
+    const Eigen::Vector2f apart = (piece.doubled / scene_.cell).cast<float>();
+    std::array<float, 3> light{};
+    for (const float image : {-0.5F, 0.5F}) {
+      const float c = col + image * apart.x();
+      const float r = row + image * apart.y();
+      const std::array<float, 3> sharp = lightAt(scene_.light, c, r);
+      const std::array<float, 3> soft = soft_[0].empty() ? sharp : lightAt(soft_, c, r);
+      for (std::size_t k = 0; k < 3; ++k) {
+        light[k] += 0.5F * piece.exposure * (sharp[k] + piece.blur * (soft[k] - sharp[k]));
+      }
+    }
+    return light;
   }
 
   const UavOptions* options_;
@@ -154,7 +168,9 @@ class Sampler {
   const Canvas* canvas_;
   const Window* window_;
   Reconstruction scene_;
+  std::array<Raster<float>, 3> soft_;  ///< light, blurred further; empty: no piece is
   ColourResponse colour_;
+  MosaicPieces pieces_;
   float hole_;
 };
 

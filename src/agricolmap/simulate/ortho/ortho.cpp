@@ -66,6 +66,7 @@ SimulatedOrtho::SimulatedOrtho(OrthoField field, const SimulationOptions& option
   // The flight's wind is in the mosaic already.
   Visit still = flightOf(options.views, seedOf(options, 2));
   still.wind = 0.0;
+  still.lean.setZero();
   const double cell = std::max(uavCell(options), std::min(field_.gsd, options.uav.gsd));
   Canvas canvas = scene_->draw(makeWindow({0.0, 0.0}, 0.0, scene_->width(), scene_->height(), cell),
                                still, 0.0, false);
@@ -101,8 +102,10 @@ SimulatedStrip SimulatedOrtho::strip(const SimulationOptions& options, int index
   const double moved = std::min(1.0, std::abs(options.views.sun_hours) / 3.0);
   lightCanvas(canvas, sunDirection(drive.solar_hour),
               1.0 - 0.5 * moved * (1.0 - options.views.overcast));
-  SimulatedStrip strip = assembleStrip(options, uav_.origin, place,
-                                       senseFromGround(canvas, options.ugv, seed(7)), seed(8));
+  const MosaicPieces pieces(options.uav.mosaic, {scene_->width(), scene_->height()},
+                            seedOf(options, 5));
+  SimulatedStrip strip = assembleStrip(
+      options, uav_.origin, place, senseFromGround(canvas, options.ugv, seed(7)), pieces, seed(8));
   strip.row_heading = field_.row_heading;
   return strip;
 }

@@ -198,10 +198,12 @@ void OrthoScene::drawCell(const Eigen::Vector2d& point, const Visit& visit, floa
   const Eigen::Vector2d still = mosaic(point, mirror);
   Eigen::Vector2f at = pixel(still);
   ground = sampleRaster(ground_, at.x(), at.y());
-  const float sway = std::clamp(sampleRaster(canopy_, at.x(), at.y()) / 0.08F, 0.0F, 1.0F);
-  if (visit.wind > 0.0 && sway > 0.0F) {
+  const float plant = std::max(0.0F, sampleRaster(canopy_, at.x(), at.y()));
+  const float sway = std::min(1.0F, plant / 0.08F);
+  if ((visit.wind > 0.0 || !visit.lean.isZero()) && sway > 0.0F) {
     const double reach = visit.wind * static_cast<double>(sway);
-    at = pixel(still + reach * Eigen::Vector2d(noise(1, 0.18), noise(2, 0.18)));
+    const Eigen::Vector2d leant = still - static_cast<double>(plant) * visit.lean;
+    at = pixel(leant + reach * Eigen::Vector2d(noise(1, 0.18), noise(2, 0.18)));
   }
   const std::array<float, 3> fine = fineAt(at);
   std::array<float, 3> other{};
