@@ -16,6 +16,8 @@ constexpr int kDecoyCandidates = 6;
 /// Decoys are looked for this far about the guess at least [m]: among few places the highest score
 /// is a matter of luck.
 constexpr double kDecoyReach = 2.0;
+/// A place of this score needs no decoys, which reach about five and hardly ever eight.
+constexpr double kClearScore = 20.0;
 
 /// How well mirrored copies of the moving map fit where they fit best.
 std::vector<double> fitOfDecoys(const PairMaps& maps, const refine::PairSignals& signals,
@@ -71,7 +73,9 @@ Located locate(const PairMaps& maps, const refine::PairSignals& signals,
                const RegistrationOptions& options, const Locator& locator, Monitor& monitor) {
   return monitor.run(Stage::kLocate, [&] {
     Located located = locatePlaces(maps, signals, waves, search, options, locator, monitor);
-    if (!located.placements.empty()) {
+    const bool clear = located.search && !located.placements.empty() &&
+                       located.placements.front().score >= kClearScore;
+    if (!located.placements.empty() && !clear) {
       located.decoys = fitOfDecoys(maps, signals, search, waves, options);
     }
     return located;

@@ -19,7 +19,8 @@ struct Located {
   std::vector<Match> rematches;       ///< the same of a second matching
   std::optional<locate::SearchReport> search;  ///< of the correlation search
   std::optional<paper::FlowReport> flow;       ///< of a matching of points
-  /// Significances of the best places of mirrored copies of the moving map, as of RefinedPose.
+  /// Significances of the best places of mirrored copies of the moving map, as of RefinedPose; none
+  /// where the best placement is clear without them.
   std::vector<double> decoys;
 };
 

@@ -30,7 +30,9 @@ struct BlockEvidence {
 struct Evidence {
   double significance = 0.0;   ///< peak over the deviation of the score over the searched shifts
   double uniqueness = 0.0;     ///< peak over the highest other one, of shifts and of placements
-  std::vector<double> decoys;  ///< significances of mirrored copies of the moving map at their best
+  /// Significances of mirrored copies of the moving map at their best; none where the place is clear
+  /// without them.
+  std::vector<double> decoys;
   map::StripFrame strip;       ///< the moving map's, along which the blocks are cut
   double block_side = 0.0;     ///< asked for [m]
   Eigen::Vector2d block_size = Eigen::Vector2d::Zero();  ///< as cut, along and across [m]
