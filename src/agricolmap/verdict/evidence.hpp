@@ -8,6 +8,7 @@
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/correlation/strip_score.hpp"
 #include "agricolmap/map/blocks.hpp"
+#include "agricolmap/verdict/parts.hpp"
 
 namespace agricolmap::verdict {
 
@@ -35,6 +36,7 @@ struct Evidence {
   Eigen::Vector2d block_size = Eigen::Vector2d::Zero();  ///< as cut, along and across [m]
   std::vector<BlockEvidence> blocks;  ///< those with enough seen cells in both maps
   std::size_t agreeing = 0;
+  PartsReport parts;  ///< that lie elsewhere than the pose says
   double agreement() const {
     return blocks.empty() ? 0.0
                           : static_cast<double>(agreeing) / static_cast<double>(blocks.size());

@@ -56,6 +56,8 @@ namespace {
 constexpr double kWeakUniqueness = 1.8;
 constexpr double kWeakAgreement = 0.55;
 constexpr double kLargeError = 0.03;  // [m]
+/// What the parts of a strip may be displaced by, root mean square over all of it [m].
+constexpr double kMostDisplaced = 0.05;
 
 /// A probability in words: nothing is certain.
 std::string percent(double probability) {
@@ -105,6 +107,9 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
                                 const VerdictOptions& options) {
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> against;
+  if (!evidence.parts.displaced.empty()) {
+    against.push_back(describe(evidence.parts) + ": register the strip in parts");
+  }
   if (evidence.uniqueness < std::max(kWeakUniqueness, options.min_uniqueness)) {
     against.push_back(
         fmt::format("another place fits almost as well: the peak is {:.2f} times the "
@@ -140,6 +145,10 @@ std::vector<std::string> support(const Finding& finding, double plane, double al
       fmt::format("the probability of the right place (within 5 cm in the plane) is {}, "
                   "heights included {}",
                   percent(plane), percent(all))};
+  if (!evidence.parts.displaced.empty()) {
+    reasons.push_back(fmt::format("{}: {:.1f} cm RMS of the whole", describe(evidence.parts),
+                                  100 * evidence.parts.rms));
+  }
   if (finding.uncertainty) {
     reasons.push_back(fmt::format(
         "expected error {:.1f} cm RMS in the plane and {:.1f} cm in height; {:.1f} cm "
@@ -171,8 +180,11 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
   if (!against.empty()) return {Status::kRejected, std::move(against), 0.0, 0.0};
   const Evidence& evidence = finding.evidence;
   const VerdictFacts facts = factsOf(finding);
-  const double all = rightProbability(facts);
-  const double plane = planeProbability(facts);
+  // Whatever the whole says, no pose lays a strip right whose parts do not lie as one.
+  const bool apart = evidence.parts.rms > kMostDisplaced;
+  const double together = apart ? evidence.parts.probability : 1.0;
+  const double all = together * rightProbability(facts);
+  const double plane = together * planeProbability(facts);
   const auto rivals = std::count_if(
       finding.rivals.begin(), finding.rivals.end(),
       [&](double significance) { return significance >= options.rival * evidence.significance; });
@@ -186,7 +198,7 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
             std::min(all, most),
             std::min(plane, most)};
   }
-  if (plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
+  if (apart || plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
     return {Status::kRejected, doubts(finding, plane, options), all, plane};
   }
   return {Status::kAccepted, support(finding, plane, all), all, plane};
