@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <optional>
 
 #include "agricolmap/core/parabola.hpp"
 #include "agricolmap/verdict/slice_path.hpp"
+#include "agricolmap/verdict/slip.hpp"
 
 namespace agricolmap::verdict {
 namespace {
@@ -70,12 +69,14 @@ class Part {
     part.begin = slices_.slices[run_.first].begin;
     part.end = slices_.slices[run_.last - 1].end;
     const double peak = followed(0, 0);
-    const Eigen::Vector2d beyond(parabolaVertex(followed(0, -1), peak, followed(0, 1)),
-                                 parabolaVertex(followed(-1, 0), peak, followed(1, 0)));
-    part.offset = slices_.cell * (mean_ + beyond);
+    part.offset = slices_.cell * (mean_ + beyond());
     part.significance = peak / deviation_;
     part.uniqueness = peak / std::max(deviation_, highestElsewhere());
     return part;
+  }
+  /// Of a slice of it that the path moves by `shift` [m].
+  Eigen::Vector2d offset(const Eigen::Vector2i& shift) const {
+    return slices_.cell * (shift.cast<double>() + beyond());
   }
 
  private:
@@ -93,6 +94,12 @@ class Part {
                                                           slices_.reach + path_[i].x() + col));
     });
     return sum;
+  }
+  /// How far the peak lies beside the path [cells].
+  Eigen::Vector2d beyond() const {
+    const double peak = followed(0, 0);
+    return {parabolaVertex(followed(0, -1), peak, followed(0, 1)),
+            parabolaVertex(followed(-1, 0), peak, followed(1, 0))};
   }
   double highestElsewhere() const {
     double highest = 0.0;
@@ -123,15 +130,52 @@ bool stands(const DisplacedPart& part, double gain) {
          part.uniqueness >= kLeastUniqueness && gain >= kLeastGain;
 }
 
+/// Where the path and the peaks beside it put the slices that tell; each with its neighbours',
+/// which alone are too small for centimetres.
+std::vector<SliceOffset> offsetsOf(const Slices& slices, const std::vector<Eigen::Vector2i>& path) {
+  std::vector<SliceOffset> offsets;
+  const double middle = 0.5 * slices.slices.back().end;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (!slices.slices[i].tells()) continue;
+    const auto alike = [&](std::size_t j) {
+      return (path[j] - path[i]).cwiseAbs().maxCoeff() <= 1;
+    };
+    Run run{i, i + 1};
+    if (i > 0 && alike(i - 1)) --run.first;
+    if (i + 1 < path.size() && alike(i + 1)) ++run.last;
+    const Eigen::Vector2d offset = Part(slices, path, run).offset(path[i]);
+    offsets.push_back({0.5 * (slices.slices[i].begin + slices.slices[i].end) - middle, offset});
+  }
+  return offsets;
+}
+
+double rmsOf(const std::vector<SliceOffset>& offsets) {
+  double sum2 = 0.0;
+  for (const SliceOffset& slice : offsets) sum2 += slice.offset.squaredNorm();
+  return std::sqrt(sum2 / static_cast<double>(offsets.size()));
+}
+
+std::optional<Eigen::Affine2d> largerPose(const std::vector<SliceOffset>& offsets,
+                                          const map::StripFrame& strip,
+                                          const Eigen::Affine2d& pose) {
+  const std::optional<Compromise> compromise = largerPart(offsets);
+  if (!compromise) return std::nullopt;
+  // In the moving frame `along` is the first strip coordinate.
+  const Eigen::RowVector2d along = strip.axes.col(0).transpose();
+  Eigen::Affine2d larger = pose;
+  larger.linear() += compromise->slope * along;
+  larger.translation() += compromise->shift - compromise->slope * (along * strip.centre);
+  return larger;
+}
+
 }  // namespace
 
-PartsReport findDisplacedParts(const Slices& slices) {
+PartsReport findDisplacedParts(const correlation::StripScore& score, const Eigen::Affine2d& pose) {
   PartsReport report;
-  if (slices.slices.empty()) return report;
+  report.length = 2.0 * score.strip().half_extent.x();
+  report.along = (pose.linear() * score.strip().axes.col(0)).normalized();
+  const Slices slices = scoreSlices(score, pose, kFar);
   const SlicePath path = likeliestPath(slices, kReach);
-  if (path.shifts.empty()) return report;
-  const double length = slices.slices.back().end;
-  double sum2 = 0.0;
   for (const Run& run : runsOf(path.shifts)) {
     if (path.shifts[run.first].isZero()) continue;
     const Part part(slices, path.shifts, run);
@@ -139,19 +183,13 @@ PartsReport findDisplacedParts(const Slices& slices) {
     double gain = 0.0;
     for (std::size_t i = run.first; i < run.last; ++i) gain += path.gain[i];
     const DisplacedPart found = part.measured();
-    if (!stands(found, gain)) continue;
-    sum2 += found.offset.squaredNorm() * (found.end - found.begin) / length;
-    report.displaced.push_back(found);
+    if (stands(found, gain)) report.displaced.push_back(found);
   }
-  report.rms = std::sqrt(sum2);
-  if (!report.displaced.empty()) report.probability = 1.0 / (1.0 + std::exp(path.log_odds));
-  return report;
-}
-
-PartsReport findDisplacedParts(const correlation::StripScore& score, const Eigen::Affine2d& pose) {
-  PartsReport report = findDisplacedParts(scoreSlices(score, pose, kFar));
-  report.length = 2.0 * score.strip().half_extent.x();
-  report.along = (pose.linear() * score.strip().axes.col(0)).normalized();
+  if (report.displaced.empty()) return report;
+  report.probability = 1.0 / (1.0 + std::exp(path.log_odds));
+  const std::vector<SliceOffset> offsets = offsetsOf(slices, path.shifts);
+  report.rms = rmsOf(offsets);
+  if (report.apart()) report.larger = largerPose(offsets, score.strip(), pose);
   return report;
 }
 

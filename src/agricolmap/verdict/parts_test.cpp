@@ -88,7 +88,7 @@ TEST(Parts, ASlipIsFoundWithItsPlaceAndSize) {
   EXPECT_NEAR(end, kLength, 0.2);
   EXPECT_LT((part.offset - offset).norm(), 0.02) << part.offset.transpose();
   EXPECT_GT(part.significance, 6.0);
-  EXPECT_NEAR(report.rms, offset.norm() * std::sqrt((end - begin) / kLength), 0.02);
+  EXPECT_NEAR(report.rms, offset.norm() * std::sqrt(3.0 / kLength), 0.03);
   EXPECT_LT(report.probability, 0.01);
   EXPECT_THAT(describe(report), HasSubstr("m at the strip's eastern end lie 0.3"));
   EXPECT_THAT(describe(report), HasSubstr("m further north than the whole says"));
@@ -110,6 +110,22 @@ TEST(Parts, APartInTheMiddleIsFound) {
   }));
   ASSERT_EQ(report.displaced.size(), 1U);
   EXPECT_THAT(describe(report), HasSubstr("m of the strip, "));
+}
+
+TEST(Parts, ACompromiseIsUndoneForTheLargerPart) {
+  // The pose halves the slip and turns by what the rest of it looks like.
+  const TestScene scene = sceneWith(kField, [](double x) {
+    const Eigen::Vector2d slip(0.0, x > 5.0 ? 0.25 : 0.0);
+    return Eigen::Vector2d(slip - Eigen::Vector2d(0.0, 0.11 + 0.03 * (x - 4.0)));
+  });
+  const PartsReport report = partsOf(scene);
+  EXPECT_TRUE(report.apart());
+  ASSERT_TRUE(report.larger.has_value());
+  const PartsReport laid = partsOf(scene, *report.larger);
+  ASSERT_EQ(laid.displaced.size(), 1U) << describe(laid);
+  EXPECT_NEAR(laid.displaced.front().offset.y(), 0.25, 0.04);
+  EXPECT_FALSE(laid.larger.has_value() &&
+               (laid.larger->translation() - report.larger->translation()).norm() > 0.04);
 }
 
 TEST(Parts, ASmoothBendIsNone) {
@@ -152,8 +168,13 @@ TEST(Parts, AreNamedByTheCompass) {
                       {.begin = 6.0, .end = 8.0, .offset = {0.0, -0.5}}};
   EXPECT_EQ(describe(report),
             "the 4.0 m at the strip's northern end lie 0.28 m further north-west than the whole "
-            "says, and 2.0 m of the strip, 6.0 m from its northern end, lie 0.50 m further south "
-            "than the whole says");
+            "says (and 1 more part elsewhere)");
+  report.displaced.erase(report.displaced.begin());
+  EXPECT_EQ(describe(report),
+            "2.0 m of the strip, 6.0 m from its northern end, lie 0.50 m further south than the "
+            "whole says");
+  report.displaced.clear();
+  EXPECT_EQ(describe(report), "");
 }
 
 }  // namespace

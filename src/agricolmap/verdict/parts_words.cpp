@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -44,11 +45,14 @@ std::string describe(const DisplacedPart& part, const PartsReport& report) {
 }  // namespace
 
 std::string describe(const PartsReport& report) {
-  std::string text;
-  for (const DisplacedPart& part : report.displaced) {
-    if (!text.empty()) text += ", and ";
-    text += describe(part, report);
-  }
+  const auto larger = [](const DisplacedPart& a, const DisplacedPart& b) {
+    return a.offset.norm() * (a.end - a.begin) < b.offset.norm() * (b.end - b.begin);
+  };
+  const auto most = std::max_element(report.displaced.begin(), report.displaced.end(), larger);
+  if (most == report.displaced.end()) return {};
+  std::string text = describe(*most, report);
+  const std::size_t more = report.displaced.size() - 1;
+  if (more > 0) text += fmt::format(" (and {} more part{} elsewhere)", more, more > 1 ? "s" : "");
   return text;
 }
 

@@ -56,8 +56,10 @@ namespace {
 constexpr double kWeakUniqueness = 1.8;
 constexpr double kWeakAgreement = 0.55;
 constexpr double kLargeError = 0.03;  // [m]
-/// What the parts of a strip may be displaced by, root mean square over all of it [m].
-constexpr double kMostDisplaced = 0.05;
+/// A registration that is said to be within so much [m] cannot be expected to be off by more: where
+/// it is, that is at most as likely as not.
+constexpr double kMostError = 0.05;
+constexpr double kAtMost = 0.5;
 
 /// A probability in words: nothing is certain.
 std::string percent(double probability) {
@@ -181,22 +183,25 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
   const Evidence& evidence = finding.evidence;
   const VerdictFacts facts = factsOf(finding);
   // Whatever the whole says, no pose lays a strip right whose parts do not lie as one.
-  const bool apart = evidence.parts.rms > kMostDisplaced;
+  const bool apart = evidence.parts.apart();
   const double together = apart ? evidence.parts.probability : 1.0;
-  const double all = together * rightProbability(facts);
-  const double plane = together * planeProbability(facts);
+  // Nor is one within a limit that it is expected to be beyond.
+  const double most = finding.uncertainty && expectedError(finding) > kMostError ? kAtMost : 1.0;
+  const double all = std::min(most, together * rightProbability(facts));
+  const double plane = std::min(most, together * planeProbability(facts));
   const auto rivals = std::count_if(
       finding.rivals.begin(), finding.rivals.end(),
       [&](double significance) { return significance >= options.rival * evidence.significance; });
-  if (rivals > 0 && evidence.significance >= options.min_fit) {
+  // Of a strip in parts each is the other's rival.
+  if (rivals > 0 && !apart && evidence.significance >= options.min_fit) {
     // Right at most as often as the best of so many equals is the true one.
-    const double most = 1.0 / (1.0 + static_cast<double>(rivals));
+    const double share = 1.0 / (1.0 + static_cast<double>(rivals));
     return {Status::kAmbiguous,
             {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
                          "a better initial guess can",
                          rivals + 1)},
-            std::min(all, most),
-            std::min(plane, most)};
+            std::min(all, share),
+            std::min(plane, share)};
   }
   if (apart || plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
     return {Status::kRejected, doubts(finding, plane, options), all, plane};
