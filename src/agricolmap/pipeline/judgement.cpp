@@ -54,11 +54,8 @@ bool fitsBetter(const Placed& next, const Placed& before) {
          next.correlation > before.correlation;
 }
 
-}  // namespace
-
-Measured measureStraightened(const refine::PairSignals& signals, const SearchSpace& space,
-                             const Refined& refined, const RegistrationOptions& options,
-                             Monitor& monitor) {
+Measured measureBent(const refine::PairSignals& signals, const SearchSpace& space,
+                     const Refined& refined, const RegistrationOptions& options, Monitor& monitor) {
   const auto at = [&](const refine::RefinedPose& found) {
     return measure(signals, space, found, refined, options, monitor);
   };
@@ -80,6 +77,22 @@ Measured measureStraightened(const refine::PairSignals& signals, const SearchSpa
   const auto finer = monitor.run(
       Stage::kRefine, [&] { return refine::refineFrom(signals, *straight, options.dense); });
   if (finer) take(at(*finer));
+  return measured;
+}
+
+}  // namespace
+
+Measured measureStraightened(const refine::PairSignals& signals, const SearchSpace& space,
+                             const Refined& refined, const RegistrationOptions& options,
+                             Monitor& monitor) {
+  Measured measured = measureBent(signals, space, refined, options, monitor);
+  const verdict::PartsReport& parts = measured.placed.evidence.parts;
+  if (!parts.larger || options.refine != RefineKind::kDense) return measured;
+  // A compromise between two parts lays neither: the larger one's pose does, and names the other.
+  Placed laid = measure(signals, space, {.pose = *parts.larger}, refined, options, monitor);
+  if (laid.evidence.parts.displaced.size() <= parts.displaced.size()) {
+    measured.placed = std::move(laid);
+  }
   return measured;
 }
 

@@ -24,7 +24,8 @@ struct Placed {
 };
 
 /// Heights and evidence at the refined pose and, where neighbouring blocks of the strip are
-/// displaced alike, at the pose that lays them straight, if that fits better in every respect.
+/// displaced alike, at the pose that lays them straight, if that fits better in every respect. Of a
+/// strip in two parts, at the pose of the larger one.
 struct Measured {
   Placed placed;
   std::optional<bool> straightened;  ///< whether that did good; nothing: was not tried

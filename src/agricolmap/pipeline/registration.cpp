@@ -63,8 +63,9 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
     Outcome next = settle(maps, signals, std::move(located), {}, options, monitor);
     if (attempt == 0 || supersedes(next, best, options.verdict.rival)) best = std::move(next);
     best.trace.attempts = attempt + 1;
-    // Other ways to locate have no finer search.
-    if (best.verdict.status == verdict::Status::kAccepted || !last) break;
+    // Other ways to locate have no finer search, and of a strip in parts it would find no more.
+    const bool apart = best.placed && best.placed->evidence.parts.apart();
+    if (best.verdict.status == verdict::Status::kAccepted || apart || !last) break;
   }
   return best;
 }

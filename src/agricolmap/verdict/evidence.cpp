@@ -120,6 +120,7 @@ Evidence measureEvidence(const correlation::StripScore& score, const Eigen::Affi
     evidence.blocks.push_back(*block);
     if (block->agrees) ++evidence.agreeing;
   }
+  evidence.parts = findDisplacedParts(score, pose);
   return evidence;
 }
 

@@ -8,6 +8,7 @@
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/correlation/strip_score.hpp"
 #include "agricolmap/map/blocks.hpp"
+#include "agricolmap/verdict/parts.hpp"
 
 namespace agricolmap::verdict {
 
@@ -28,18 +29,19 @@ struct BlockEvidence {
 };
 
 struct Evidence {
-  double significance = 0.0;   ///< peak over the deviation of the score over the searched shifts
-  double uniqueness = 0.0;     ///< peak over the highest other one, of shifts and of placements
-  /// Significances of mirrored copies of the moving map at their best; none where the place is clear
-  /// without them.
+  double significance = 0.0;  ///< peak over the deviation of the score over the searched shifts
+  double uniqueness = 0.0;    ///< peak over the highest other one, of shifts and of placements
+  /// Significances of mirrored copies of the moving map at their best; none where the place is
+  /// clear without them.
   std::vector<double> decoys;
-  map::StripFrame strip;       ///< the moving map's, along which the blocks are cut
-  double block_side = 0.0;     ///< asked for [m]
+  map::StripFrame strip;    ///< the moving map's, along which the blocks are cut
+  double block_side = 0.0;  ///< asked for [m]
   Eigen::Vector2d block_size = Eigen::Vector2d::Zero();  ///< as cut, along and across [m]
   std::vector<BlockEvidence> blocks;  ///< those with enough seen cells in both maps
   std::size_t agreeing = 0;
   /// Peak over that of the best decoy; over one deviation when there is none.
   double decoyRatio() const;
+  PartsReport parts;  ///< that lie elsewhere than the pose says
   double agreement() const {
     return blocks.empty() ? 0.0
                           : static_cast<double>(agreeing) / static_cast<double>(blocks.size());

@@ -54,6 +54,23 @@ Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight() const {
 
 namespace {
 
+/// Blocks of parts that lie elsewhere are out of a block's own reach: the parts say where they lie,
+/// so that they count. Others that found no place tell nothing and stay out.
+void moveWithTheirParts(std::vector<BlockShift>& blocks, const Evidence& evidence,
+                        const Eigen::Affine2d& pose) {
+  if (evidence.parts.displaced.empty()) return;
+  const Eigen::Affine2d moving_from_fixed = pose.inverse();
+  for (BlockShift& block : blocks) {
+    const double along =
+        evidence.strip.local(moving_from_fixed * block.place).x() + evidence.strip.half_extent.x();
+    for (const DisplacedPart& part : evidence.parts.displaced) {
+      if (along < part.begin || along >= part.end) continue;
+      block.shift = part.offset;
+      block.usable = true;
+    }
+  }
+}
+
 /// Expected RMS error of the blocks of the whole `strip` [m]. What lies beyond the fixed map hangs
 /// on the `compared` blocks like a lever, and the drift that bent these goes on there.
 double expectedOver(const std::vector<BlockShift>& strip, const std::vector<BlockShift>& compared,
@@ -79,7 +96,8 @@ std::optional<PoseUncertainty> estimateUncertainty(
     const Evidence& evidence, const SearchSpace& space, double systematic, double height_residual,
     const UncertaintyOptions& options) {
   if (evidence.block_side <= 0.0) return std::nullopt;
-  const std::vector<BlockShift> strip = shiftBlocks(fixed, moving, pose, evidence.block_side);
+  std::vector<BlockShift> strip = shiftBlocks(fixed, moving, pose, evidence.block_side);
+  moveWithTheirParts(strip, evidence, pose);
   std::vector<BlockShift> blocks;
   std::copy_if(strip.begin(), strip.end(), std::back_inserter(blocks),
                [](const BlockShift& block) { return block.usable; });

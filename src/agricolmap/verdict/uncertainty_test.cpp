@@ -71,6 +71,34 @@ TEST(Uncertainty, TheHeightHangsOnNothingElse) {
   EXPECT_EQ(all.row(2).sum(), all(2, 2));
 }
 
+TEST(Uncertainty, GrowsWithPartsThatLieElsewhere) {
+  // The last third slipped further than a block looks.
+  const auto none = [](const Eigen::Vector2d&) { return Eigen::Vector2d(0.0, 0.0); };
+  const auto slipped = [](const Eigen::Vector2d& p) {
+    return Eigen::Vector2d(0.0, p.x() > 7.5 ? 0.4 : 0.0);
+  };
+  const map::SignalMap fixed = texture({0.0, 0.0}, 100, 300, none);
+  const map::SignalMap moving = texture({1.0, 1.0}, 50, 250, slipped);
+  Evidence evidence;
+  evidence.block_side = 1.0;
+  evidence.strip = map::stripFrame(moving);
+  const auto estimate = [&] {
+    return estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, 0.005,
+                               {});
+  };
+  const auto blind = estimate();
+  ASSERT_TRUE(blind.has_value());
+  const bool eastward = evidence.strip.axes(0, 0) > 0.0;
+  DisplacedPart part{.begin = 6.5, .end = 10.0, .offset = {0.0, 0.4}};
+  if (!eastward) part.begin = 0.0, part.end = 3.5;
+  evidence.parts.displaced = {part};
+  const auto seeing = estimate();
+  ASSERT_TRUE(seeing.has_value());
+  EXPECT_GT(seeing->local_rms, 0.1);
+  EXPECT_LT(blind->local_rms, 0.05);
+  EXPECT_GT(seeing->expected_rms, 2.0 * blind->expected_rms);
+}
+
 TEST(Uncertainty, NeedsBlocks) {
   const auto none = [](const Eigen::Vector2d&) { return Eigen::Vector2d(0.0, 0.0); };
   const map::SignalMap fixed = texture({0.0, 0.0}, 60, 60, none);

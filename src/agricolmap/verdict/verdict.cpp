@@ -53,6 +53,7 @@ namespace {
 // Below these a piece of evidence is worth a sentence in the reasons of a refusal.
 constexpr double kWeakUniqueness = 1.8;
 constexpr double kWeakDecoy = 1.4;
+constexpr double kMirroredDecoy = 0.6;
 constexpr double kWeakAgreement = 0.55;
 constexpr double kLargeError = 0.03;  // [m]
 
@@ -104,13 +105,20 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
                                 const VerdictOptions& options) {
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> against;
+  if (!evidence.parts.displaced.empty()) {
+    against.push_back(describe(evidence.parts) + ": register the strip in parts");
+  }
   if (evidence.uniqueness < std::max(kWeakUniqueness, options.min_uniqueness)) {
     against.push_back(
         fmt::format("another place fits almost as well: the peak is {:.2f} times the "
                     "highest other one",
                     evidence.uniqueness));
   }
-  if (evidence.decoyRatio() < kWeakDecoy) {
+  if (evidence.decoyRatio() < kMirroredDecoy && evidence.significance < options.min_fit) {
+    against.push_back(
+        "a mirrored copy of the moving map fits far better than the map itself: its axes may be "
+        "left-handed, or one of them turned round");
+  } else if (evidence.decoyRatio() < kWeakDecoy) {
     against.push_back(
         fmt::format("a mirrored copy of the moving map, which fits nowhere, fits almost as well: "
                     "the peak is {:.2f} times its highest one",
@@ -138,15 +146,23 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
 
 std::vector<std::string> support(const Finding& finding, double plane, double all) {
   const Evidence& evidence = finding.evidence;
+  std::string peak =
+      fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness);
+  if (!evidence.decoys.empty()) {
+    peak += fmt::format(", and {:.2f} times that of a mirrored copy, which fits nowhere",
+                        evidence.decoyRatio());
+  }
   std::vector<std::string> reasons = {
-      fmt::format("the peak is {:.2f} times the highest other one, and {:.2f} times that of a "
-                  "mirrored copy of the moving map, which fits nowhere",
-                  evidence.uniqueness, evidence.decoyRatio()),
+      peak,
       fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
                   evidence.blocks.size()),
       fmt::format("the probability of the right place (within 5 cm in the plane) is {}, "
                   "heights included {}",
                   percent(plane), percent(all))};
+  if (!evidence.parts.displaced.empty()) {
+    reasons.push_back(fmt::format("{}: {:.1f} cm RMS of the whole", describe(evidence.parts),
+                                  100 * evidence.parts.rms));
+  }
   if (finding.uncertainty) {
     reasons.push_back(fmt::format(
         "expected error {:.1f} cm RMS in the plane ({:.1f} cm of it systematic) and {:.1f} cm in "
@@ -179,24 +195,28 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
   if (!against.empty()) return {Status::kRejected, std::move(against)};
   const Evidence& evidence = finding.evidence;
   const VerdictFacts facts = factsOf(finding);
-  const double all = rightProbability(facts);
-  const double plane = planeProbability(facts);
+  // Whatever the whole says, no pose lays a strip right whose parts do not lie as one.
+  const bool apart = evidence.parts.apart();
+  const double together = apart ? evidence.parts.probability : 1.0;
+  const double all = together * rightProbability(facts);
+  const double plane = together * planeProbability(facts);
   const double place = placeProbability(facts);
   const auto rivals = std::count_if(
       finding.rivals.begin(), finding.rivals.end(),
       [&](double significance) { return significance >= options.rival * evidence.significance; });
-  if (rivals > 0 && evidence.significance >= options.min_fit) {
+  // Of a strip in parts each is the other's rival.
+  if (rivals > 0 && !apart && evidence.significance >= options.min_fit) {
     // Right at most as often as the best of so many equals is the true one.
-    const double most = 1.0 / (1.0 + static_cast<double>(rivals));
+    const double share = 1.0 / (1.0 + static_cast<double>(rivals));
     return {Status::kAmbiguous,
             {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
                          "a better initial guess can",
                          rivals + 1)},
-            std::min(all, most),
-            std::min(plane, most),
-            std::min(place, most)};
+            std::min(all, share),
+            std::min(plane, share),
+            std::min(place, share)};
   }
-  if (plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
+  if (apart || plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
     return {Status::kRejected, doubts(finding, plane, options), all, plane, place};
   }
   return {Status::kAccepted, support(finding, plane, all), all, plane, place};

@@ -80,6 +80,34 @@ TEST(Verdict, ContradictionsOutweighAllEvidence) {
   EXPECT_THAT(judge(turned, {}, {}).reasons.front(), HasSubstr("heading"));
 }
 
+TEST(Verdict, APartThatLiesElsewhereIsNamedAndNotAccepted) {
+  Finding finding = clearFinding();
+  PartsReport& parts = finding.evidence.parts;
+  parts.length = 10.0;
+  parts.displaced = {{.begin = 6.0, .end = 10.0, .offset = {0.0, 0.31}}};
+  parts.rms = 0.196;
+  parts.probability = 0.001;
+  const Verdict slipped = judge(finding, {}, {});
+  EXPECT_EQ(slipped.status, Status::kRejected);
+  EXPECT_THAT(slipped.reasons.front(),
+              HasSubstr("the 4.0 m at the strip's eastern end lie 0.31 m further north"));
+  EXPECT_LT(slipped.plane_probability, 0.01);
+  EXPECT_LT(slipped.probability, 0.01);
+}
+
+TEST(Verdict, APartThatLeavesTheWholeWithinItsLimitIsOnlyNamed) {
+  Finding finding = clearFinding();
+  PartsReport& parts = finding.evidence.parts;
+  parts.length = 10.0;
+  parts.displaced = {{.begin = 9.0, .end = 10.0, .offset = {0.0, 0.09}}};
+  parts.rms = 0.028;
+  parts.probability = 0.001;
+  const Verdict verdict = judge(finding, {}, {});
+  EXPECT_EQ(verdict.status, Status::kAccepted);
+  EXPECT_EQ(verdict.probability, judge(clearFinding(), {}, {}).probability);
+  EXPECT_THAT(verdict.reasons, ::testing::Contains(HasSubstr("0.09 m further north")));
+}
+
 TEST(Verdict, WithoutAnUncertaintyThereIsLessToTrust) {
   Finding finding = clearFinding();
   const double known = judge(finding, {}, {}).probability;

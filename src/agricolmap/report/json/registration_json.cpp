@@ -137,6 +137,22 @@ Json residualsJson(const pipeline::Registration& registration) {
   return json;
 }
 
+Json partsJson(const verdict::PartsReport& parts) {
+  Json json;
+  json["rms_m"] = number(parts.rms);
+  json["along"] = vectorJson(parts.along);
+  Json displaced = Json::array();
+  for (const verdict::DisplacedPart& part : parts.displaced) {
+    displaced.push_back({{"begin_m", number(part.begin)},
+                         {"end_m", number(part.end)},
+                         {"offset_m", vectorJson(part.offset)},
+                         {"significance", number(part.significance)},
+                         {"uniqueness", number(part.uniqueness)}});
+  }
+  json["displaced"] = std::move(displaced);
+  return json;
+}
+
 Json evidenceJson(const verdict::Evidence& evidence) {
   Json json;
   json["significance"] = number(evidence.significance);
@@ -151,6 +167,7 @@ Json evidenceJson(const verdict::Evidence& evidence) {
                       {"agrees", block.agrees}});
   }
   json["blocks"] = std::move(blocks);
+  json["parts"] = partsJson(evidence.parts);
   return json;
 }
 

@@ -94,6 +94,23 @@ TEST(RegistrationJson, AcceptedHasEverything) {
   EXPECT_EQ(json["moving"]["path"], "\xEF\xBF\xBD.ply");
 }
 
+TEST(RegistrationJson, SaysWhichPartsLieElsewhere) {
+  pipeline::Registration registration = testing::testRegistration();
+  EXPECT_TRUE(reportOf(registration)["evidence"]["parts"]["displaced"].empty());
+  verdict::PartsReport& parts = registration.placed->evidence.parts;
+  parts.displaced = {
+      {.begin = 2.0, .end = 6.0, .offset = {0.1, -0.3}, .significance = 8.5, .uniqueness = 2.5}};
+  parts.rms = 0.26;
+  const Json json = reportOf(registration)["evidence"]["parts"];
+  EXPECT_EQ(json["rms_m"], 0.26);
+  EXPECT_EQ(json["along"], (Json{1.0, 0.0}));
+  EXPECT_EQ(json["displaced"], Json({{{"begin_m", 2.0},
+                                      {"end_m", 6.0},
+                                      {"offset_m", {0.1, -0.3}},
+                                      {"significance", 8.5},
+                                      {"uniqueness", 2.5}}}));
+}
+
 TEST(RegistrationJson, MatricesRoundTripToTheLastBit) {
   const pipeline::Registration registration = testing::testRegistration();
   const Json json = reportOf(registration);
