@@ -170,6 +170,21 @@ TEST(Dates, FlightsOneWeekApartAgreeWhereTheTruthSays) {
   EXPECT_FALSE(maker.make(mirrored, 5001).overlaps);
 }
 
+/// Likewise.
+TEST(Dates, EachPartOfTheTrialHasRoomForStrips) {
+  PairMaker maker(AGRICOLMAP_SHARED_DIR);
+  for (const Settings settings : kAll) {
+    const Case one = dateCase("dates", "dates-2w-15-29", settings);
+    const std::string missing = maker.unavailable(one);
+    if (!missing.empty()) GTEST_SKIP() << missing;
+    const io::RasterImage image =
+        io::readRaster(std::filesystem::path(AGRICOLMAP_SHARED_DIR) / dateFile(one.dates->moving));
+    for (int seed = 5001; seed <= 5020; ++seed) {
+      EXPECT_GT(cutStrip(image, *one.dates, one.optionsFor(seed)).cloud.size(), 41000U) << seed;
+    }
+  }
+}
+
 TEST(Slips, DisplaceOneEndAndKeepEachPointsTruth) {
   Case straight;
   straight.options = simulate::cropPreset(simulate::Crop::kSugarBeet20m);

@@ -12,7 +12,7 @@ struct Slip {
 };
 
 /// Displaces one end of the strip, which of the two and to which side being drawn. Each point keeps
-/// its own truth; the best affine becomes that of the larger part alone.
+/// its own truth; the best affine becomes that of the part that stays.
 void displacePart(simulate::SimulatedStrip& strip, const Slip& slip,
                   const simulate::SimulationOptions& options);
 
