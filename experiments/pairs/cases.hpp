@@ -11,7 +11,6 @@
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 #include "experiments/pairs/dates.hpp"
-#include "experiments/pairs/published.hpp"
 #include "experiments/pairs/slip.hpp"
 
 namespace agricolmap::experiments {

@@ -80,8 +80,7 @@ Slices scoreSlices(const correlation::StripScore& score, const Eigen::Affine2d& 
     block.high = {slice.end - strip.half_extent.x(), strip.half_extent.y()};
     if (!seen(score, block, pose)) return;
     const correlation::Template piece = correlation::makeTemplate(
-        score.moving(), anchor, pose.linear(), boundsOf(block, strip), frame.cell,
-        score.options().height_weight,
+        score.moving(), anchor, pose.linear(), boundsOf(block, strip), frame.cell, score.options(),
         [&](const Eigen::Vector2d& p) { return block.contains(strip.local(p)); });
     slice.scores = score.around(piece, at, result.reach);
     slice.deviation = deviationOfFar(slice.scores, result.reach, frame.cell);

@@ -133,6 +133,7 @@ Json residualsJson(const pipeline::Registration& registration) {
                       {"residual_m", number(vertical.residual)},
                       {"cells", vertical.cells},
                       {"ground_share", number(vertical.ground_share)},
+                      {"doubt_m", number(vertical.doubt)},
                       {"canopy_gain", number(vertical.canopy_gain)}};
   return json;
 }
@@ -189,6 +190,7 @@ Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registrat
   json["axis_x"] = vectorJson(uncertainty.axes.col(0));
   json["axis_y"] = vectorJson(uncertainty.axes.col(1));
   json["expected_rms_m"] = number(uncertainty.expected_rms);
+  json["systematic_rms_m"] = number(uncertainty.systematic_rms);
   json["local_rms_m"] = number(uncertainty.local_rms);
   return json;
 }
@@ -250,6 +252,7 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["warnings"] = stringsJson(warningsOf(fixed, moving, monitor));
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
+  json["place_probability"] = number(registration.verdict.place_probability);
   json["transform"] = transformJson(fixed, moving, registration);
   json["uncertainty"] = uncertaintyJson(fixed, registration);
   json["alternatives"] = alternativesJson(registration);
