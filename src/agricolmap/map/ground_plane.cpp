@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "agricolmap/core/robust.hpp"
@@ -11,7 +12,7 @@
 namespace agricolmap::map {
 namespace {
 
-constexpr std::size_t kMinPointsPerCell = 3;
+constexpr std::ptrdiff_t kMinPointsPerCell = 3;
 constexpr int kIterations = 15;
 /// Points so close to a plane may be of it: a field's clods and tracks [m].
 constexpr double kRelief = 0.06;
@@ -47,6 +48,30 @@ double supportOf(const GroundPlane& plane, const LevelPoints& points,
   return support;
 }
 
+/// A point and its cell.
+struct Place {
+  std::int64_t row = 0;
+  std::int64_t col = 0;
+  std::size_t point = 0;
+};
+
+/// Stable, by counting: cells are few beside the points, and this is done many times.
+std::vector<Place> sortedBy(std::vector<Place> places, std::int64_t Place::*key) {
+  if (places.empty()) return places;
+  const auto [low, high] =
+      std::minmax_element(places.begin(), places.end(),
+                          [&](const Place& a, const Place& b) { return a.*key < b.*key; });
+  const std::int64_t first = (*low).*key;
+  std::vector<std::size_t> next(static_cast<std::size_t>((*high).*key - first) + 2, 0);
+  for (const Place& place : places) ++next[static_cast<std::size_t>(place.*key - first) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<Place> sorted(places.size());
+  for (const Place& place : places) {
+    sorted[next[static_cast<std::size_t>(place.*key - first)]++] = place;
+  }
+  return sorted;
+}
+
 }  // namespace
 
 Eigen::Vector3d GroundPlane::normal() const {
@@ -54,27 +79,23 @@ Eigen::Vector3d GroundPlane::normal() const {
 }
 
 LevelPoints lowPoints(const LevelPoints& points, double cell, double percentile) {
-  std::vector<std::pair<std::int64_t, std::size_t>> keyed(points.size());
+  std::vector<Place> places(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto col = static_cast<std::int64_t>(std::floor(points[i].x() / cell));
-    const auto row = static_cast<std::int64_t>(std::floor(points[i].y() / cell));
-    keyed[i] = {(row << 32) + col, i};
+    places[i] = {static_cast<std::int64_t>(std::floor(points[i].y() / cell)),
+                 static_cast<std::int64_t>(std::floor(points[i].x() / cell)), i};
   }
-  std::sort(keyed.begin(), keyed.end());
+  places = sortedBy(sortedBy(std::move(places), &Place::col), &Place::row);
   LevelPoints low;
-  for (std::size_t begin = 0; begin < keyed.size();) {
-    std::size_t end = begin;
-    while (end < keyed.size() && keyed[end].first == keyed[begin].first) ++end;
-    if (end - begin >= kMinPointsPerCell) {
-      const auto nth = keyed.begin() +
-                       static_cast<std::ptrdiff_t>(static_cast<double>(begin) +
-                                                   percentile * static_cast<double>(end - begin));
-      std::nth_element(keyed.begin() + static_cast<std::ptrdiff_t>(begin), nth,
-                       keyed.begin() + static_cast<std::ptrdiff_t>(end),
-                       [&](const auto& a, const auto& b) {
-                         return points[a.second].z() < points[b.second].z();
-                       });
-      low.push_back(points[nth->second]);
+  for (auto begin = places.begin(); begin != places.end();) {
+    auto end = begin;
+    while (end != places.end() && end->row == begin->row && end->col == begin->col) ++end;
+    const auto count = end - begin;
+    if (count >= kMinPointsPerCell) {
+      const auto nth = begin + static_cast<std::ptrdiff_t>(percentile * static_cast<double>(count));
+      std::nth_element(begin, nth, end, [&](const Place& a, const Place& b) {
+        return points[a.point].z() < points[b.point].z();
+      });
+      low.push_back(points[nth->point]);
     }
     begin = end;
   }
