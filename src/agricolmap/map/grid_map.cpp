@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::map {
 
@@ -248,6 +250,16 @@ GridOptions coarsened(const GridOptions& options, double spacing) {
   coarser.cell *= factor;
   coarser.sigma *= factor;
   return coarser;
+}
+
+double canopyHeight(const GridMap& map) {
+  std::vector<float> heights;
+  heights.reserve(map.filled);
+  for (std::size_t i = 0; i < map.weight.size(); ++i) {
+    if (map.valid(i)) heights.push_back(map.height[i]);
+  }
+  if (heights.empty()) return 0.0;
+  return std::max(0.0, static_cast<double>(quantile(std::move(heights), 0.9)));
 }
 
 GridMap croppedMap(const GridMap& map, const Box2& window) {

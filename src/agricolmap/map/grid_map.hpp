@@ -62,6 +62,9 @@ GridOptions coarsened(const GridOptions& options, double spacing);
 GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options);
 
+/// How tall the plants are [m]: height above the ground that a tenth of the seen cells surpass.
+double canopyHeight(const GridMap& map);
+
 /// The part of a map whose cells touch `window`; `points` stays the whole map's.
 GridMap croppedMap(const GridMap& map, const Box2& window);
 

@@ -1,6 +1,7 @@
 #include "agricolmap/pipeline/judgement.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "agricolmap/refine/channel_poses.hpp"
 #include "agricolmap/refine/fit.hpp"
@@ -39,7 +40,8 @@ Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
     const map::SignalMap fixed = signals.fixedSignals(pose, kBlockFactor);
     const map::SignalMap& moving = signals.filled(kBlockFactor);
     const double systematic =
-        refine::disagreementOfChannels(fixed, moving, pose, options.dense).value_or(0.0);
+        std::hypot(refine::disagreementOfChannels(fixed, moving, pose, options.dense).value_or(0.0),
+                   options.uncertainty.lean * map::canopyHeight(signals.moving().grid()));
     placed.uncertainty =
         verdict::estimateUncertainty(fixed, moving, pose, placed.evidence, space, systematic,
                                      placed.heights.deviation(), options.uncertainty);

@@ -11,7 +11,7 @@ namespace {
 /// Of a decoy's search only how high the best place scores is of use, and the highest of a few
 /// hundred thousand scores is not much lower than that of ten times as many.
 constexpr double kDecoyShare = 0.125;
-constexpr int kDecoyClimbs = 12;
+constexpr int kDecoyClimbs = 24;
 constexpr int kDecoyCandidates = 6;
 /// Decoys are looked for this far about the guess at least [m]: among few places the highest score
 /// is a matter of luck.

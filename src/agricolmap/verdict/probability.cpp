@@ -10,7 +10,7 @@ namespace {
 /// A registration is right within this RMS displacement [m].
 constexpr double kLimit = 0.05;
 /// Part of what the blocks differ by that is deformation of the strip; the rest is their own noise.
-constexpr double kLocalShare = 0.5;
+constexpr double kLocalShare = 0.6;
 /// Share of blocks that agree by chance: a circle of 8 cm in one of half a metre.
 constexpr double kChanceAgreement = 0.026;
 

@@ -16,6 +16,8 @@ void listOptions(OptionTable& table, UncertaintyOptions& options) {
                "factor on the deviations that the blocks' disagreement gives");
   table.number("floor", options.floor, 0.0, 10.0, "m",
                "displacement that is left when no block disagrees, because all err alike");
+  table.number("lean", options.lean, 0.0, 10.0, "m/m",
+               "the same by the plants' height, for wind leans all of them one way");
   table.number("height_inflation", options.height_inflation, 0.0, 1000.0, "",
                "factor on the deviation of the ground's heights");
   table.number("height_floor", options.height_floor, 0.0, 10.0, "m",

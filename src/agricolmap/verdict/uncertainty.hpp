@@ -19,6 +19,8 @@ struct UncertaintyOptions {
   /// Displacement that is left when the blocks agree to a hair, because all are wrong alike: a
   /// camera low above the ground and one high above see a leaf in different places [m].
   double floor = 0.003;
+  /// And by so much of the plants' height, for wind leans all of them one way [m/m].
+  double lean = 0.02;
   double height_inflation = 1.2;  ///< factor on the deviation of the ground's heights
   double height_floor = 0.01;     ///< deviation of the height that is left without any [m]
 };
@@ -36,7 +38,7 @@ struct PoseUncertainty {
   /// Expected horizontal RMS error over the strip, that beyond the fixed map included [m].
   double expected_rms = 0.0;
   /// Share of that which all blocks may have in common, because what the maps show of plants and of
-  /// soil contradict one another [m].
+  /// soil contradict one another, and for wind leans all plants one way [m].
   double systematic_rms = 0.0;
   double local_rms = 0.0;  ///< what the blocks differ by after the best affine: drift, wind [m]
 
