@@ -17,6 +17,8 @@ constexpr double kFar = 1.6;    ///< how far chance is looked at [m]
 constexpr double kOwnPeak = 0.25;
 /// A part is displaced from this on: less is the drift that every strip has [m].
 constexpr double kLeastOffset = 0.065;
+/// One slice alone may be a place where plants changed: on real flights a week apart some do.
+constexpr std::size_t kLeastSlices = 2;
 /// A peak below this, or not so much higher than the highest of chance, is chance itself.
 constexpr double kLeastSignificance = 4.5;
 constexpr double kLeastUniqueness = 1.25;
@@ -177,7 +179,7 @@ PartsReport findDisplacedParts(const correlation::StripScore& score, const Eigen
   const Slices slices = scoreSlices(score, pose, kFar);
   const SlicePath path = likeliestPath(slices, kReach);
   for (const Run& run : runsOf(path.shifts)) {
-    if (path.shifts[run.first].isZero()) continue;
+    if (path.shifts[run.first].isZero() || run.last - run.first < kLeastSlices) continue;
     const Part part(slices, path.shifts, run);
     if (part.empty()) continue;
     double gain = 0.0;
