@@ -175,5 +175,35 @@ TEST(Pipeline, RefusesOptionsOutsideTheirLimits) {
                UsageError);
 }
 
+/// The cloud laid flat, as an orthomosaic is.
+Cloud flat(const Cloud& cloud) {
+  Cloud made = cloud;
+  for (Eigen::Vector3f& point : made.xyz) point.z() = 0.0F;
+  return made;
+}
+
+TEST(Pipeline, CloudsWithoutHeightsAreRegisteredByTheirColoursAndItSaysSo) {
+  const simulate::SimulatedPair pair = smallPair(7);
+  Monitor monitor;
+  const pipeline::Registration result = pipeline::registerClouds(
+      flat(pair.uav), flat(pair.ugv), pair.prior, pipeline::preset("default"), monitor);
+  EXPECT_EQ(result.verdict.status, verdict::Status::kAccepted);
+  ASSERT_TRUE(result.transform);
+  const evaluate::RegistrationErrors errors = evaluate::evaluateTransform(
+      result.transform->fixed_from_moving, {pair.best_affine, pair.truth}, pair.ugv);
+  EXPECT_LT(errors.rms_horizontal, 0.05);
+  EXPECT_TRUE(std::any_of(
+      monitor.warnings().begin(), monitor.warnings().end(),
+      [](const std::string& text) { return text.find("is flat") != std::string::npos; }));
+}
+
+TEST(Pipeline, AMirroredStripIsRefusedAndNamedSo) {
+  simulate::SimulatedPair pair = smallPair(7);
+  for (Eigen::Vector3f& point : pair.ugv.xyz) point.y() = -point.y();
+  const pipeline::Registration result = registerPair(pair);
+  EXPECT_EQ(result.verdict.status, verdict::Status::kRejected);
+  EXPECT_LT(result.verdict.place_probability, 0.2);
+}
+
 }  // namespace
 }  // namespace agricolmap

@@ -72,5 +72,33 @@ TEST(MapSignals, MakesEachMapOnce) {
   EXPECT_EQ(alone.deviation[0], signals.at(3).deviation[0]);
 }
 
+/// The map in the middle of a frame that is `rim` cells larger on each side, empty there.
+map::GridMap padded(const map::GridMap& map, int rim) {
+  map::GridMap large = map;
+  large.frame.rows += 2 * rim;
+  large.frame.cols += 2 * rim;
+  large.frame.corner -= Eigen::Vector2d::Constant(rim * map.frame.cell);
+  const auto widened = [&](auto raster) {
+    decltype(raster) wide(large.frame.rows, large.frame.cols);
+    for (int r = 0; r < map.frame.rows; ++r) {
+      for (int c = 0; c < map.frame.cols; ++c) wide(r + rim, c + rim) = raster(r, c);
+    }
+    return wide;
+  };
+  large.weight = widened(map.weight);
+  large.height = widened(map.height);
+  large.exg = widened(map.exg);
+  large.colour = widened(map.colour);
+  return large;
+}
+
+TEST_F(StripScoreTest, EmptyCellsAroundTheMapMakeAPlaceNoMoreSignificant) {
+  const map::GridMap large = padded(scene_.fixed, 300);
+  const MapSignals fixed(large, {});
+  const StripScore score(fixed.at(kFactor), moving_.at(kFactor), fixed.filter(kFactor, {}));
+  const double here = score_.significance(scene_.pose);
+  EXPECT_NEAR(score.significance(scene_.pose), here, 0.1 * here);
+}
+
 }  // namespace
 }  // namespace agricolmap::correlation

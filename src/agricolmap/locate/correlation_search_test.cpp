@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "agricolmap/map/test_field.hpp"
+#include "agricolmap/map/test_scene.hpp"
 
 namespace agricolmap::locate {
 namespace {
@@ -69,6 +70,36 @@ TEST(CorrelationSearch, AMapSmallerThanTheSearchHasNoSecondPlace) {
   field.seed = 22;
   for (const Eigen::Vector2d& shift : {Eigen::Vector2d(0.0, 1.2), {0.0, -1.2}, {0.3, 0.8}}) {
     EXPECT_LT(worstCorner(field, {shift, 0.03, 0.95, 1.05}), 0.15) << shift.transpose();
+  }
+}
+
+TEST(CorrelationSearch, MirroredCopiesOfTheStripFitNowhere) {
+  const testing::TestScene scene =
+      testing::testScene({.size = 12.0}, {{0.6, -0.4}, 0.05, 1.06, 0.95});
+  const correlation::MapSignals fixed(scene.fixed, {});
+  const correlation::MapSignals moving(scene.moving, {});
+  const RowWaves waves = rowWaves(fixed, moving);
+  SearchSpace space;
+  space.centre = scene.middle;
+  const double right =
+      searchByCorrelation(fixed, moving, waves, space, {}).placements.front().score;
+  const std::vector<Eigen::Matrix2d> mirrors = decoyMirrors(moving, waves);
+  ASSERT_EQ(mirrors.size(), 2U);
+  for (const Eigen::Matrix2d& mirror : mirrors) {
+    EXPECT_LT(mirror.determinant(), 0.0);
+    space.mirror = mirror;
+    const SearchResult decoy = searchByCorrelation(fixed, moving, waves, space, {});
+    ASSERT_FALSE(decoy.placements.empty());
+    EXPECT_LT(decoy.placements.front().pose.linear().determinant(), 0.0);
+    EXPECT_LT(decoy.placements.front().score, 0.7 * right);
+    EXPECT_GT(decoy.placements.front().score, 2.0);
+    // A part of the headings and scales tells nearly as much.
+    CorrelationOptions some;
+    some.share = 0.125;
+    const SearchResult thinned = searchByCorrelation(fixed, moving, waves, space, some);
+    ASSERT_FALSE(thinned.placements.empty());
+    EXPECT_LT(thinned.report.correlations, decoy.report.correlations);
+    EXPECT_GT(thinned.placements.front().score, 0.6 * decoy.placements.front().score);
   }
 }
 

@@ -73,6 +73,9 @@ struct Coarse {
   Raster<float> channel[kSignalChannels];
 };
 
+/// Deviations below these are none: of Excess Green, height [m] and luminance.
+constexpr double kFlat[kSignalChannels] = {1e-4, 1e-3, 1e-4};
+
 /// Whether a channel is looked at.
 bool uses(SignalTerm term, int channel) {
   switch (term) {
@@ -181,8 +184,11 @@ SignalMap makeSignalMap(const GridMap& map, int factor, const SignalOptions& opt
     signal.channel[k] = std::move(coarse.channel[k]);
     if (uses(options.term, k)) {
       signal.deviation[k] = highPass(signal.channel[k], signal.weight, radius, options.clip);
-    } else {
+    }
+    // The rounding of a flat cloud's heights is no relief.
+    if (signal.deviation[k] < kFlat[k]) {
       std::fill(signal.channel[k].begin(), signal.channel[k].end(), 0.0F);
+      signal.deviation[k] = 0.0;
     }
   }
   return signal;

@@ -58,5 +58,31 @@ TEST(SignalMap, LeavesOutWhatTheTermLeavesOut) {
   EXPECT_EQ(signal.deviation[1], 0.0);
 }
 
+TEST(SignalMap, SoilThatIsBrighterIsSeenThoughNothingIsGreener) {
+  GridMap map = makeRows(false);
+  std::fill(map.exg.begin(), map.exg.end(), 0.1F);
+  for (int r = 0; r < 200; ++r) {
+    for (int c = 0; c < 200; ++c) {
+      const bool stone = (r / 10 * 7 + c / 10 * 3) % 11 == 0;
+      map.colour(r, c) = stone ? Rgb{190, 180, 170} : Rgb{110, 95, 80};
+    }
+  }
+  const SignalMap all = makeSignalMap(map, 1, {});
+  EXPECT_FALSE(all.has(kGreenChannel));
+  EXPECT_TRUE(all.has(kHeightChannel));
+  EXPECT_TRUE(all.has(kLuminanceChannel));
+  SignalOptions paper;
+  paper.term = SignalTerm::kExgHeight;
+  EXPECT_FALSE(makeSignalMap(map, 1, paper).has(kLuminanceChannel));
+}
+
+TEST(SignalMap, RoundingIsNoRelief) {
+  GridMap map = makeRows(false);
+  for (std::size_t i = 0; i < map.height.size(); ++i) {
+    map.height[i] = i % 2 == 0 ? 0.0F : 2e-4F;
+  }
+  EXPECT_FALSE(makeSignalMap(map, 1, {}).has(kHeightChannel));
+}
+
 }  // namespace
 }  // namespace agricolmap::map

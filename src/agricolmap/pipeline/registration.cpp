@@ -53,6 +53,7 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
   const refine::PairSignals signals = signalsOf(fixed, moving, options, monitor);
   const locate::RowWaves waves =
       monitor.run(Stage::kSignals, [&] { return locate::rowWaves(fixed, moving); });
+  warnOfFlat(fixed, moving, monitor);
   Outcome best;
   std::optional<locate::SearchReport> last;
   for (std::size_t attempt = 0; attempt < most; ++attempt) {

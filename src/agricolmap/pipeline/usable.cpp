@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "agricolmap/refine/pair_signals.hpp"
+
 namespace agricolmap::pipeline {
 namespace {
 
@@ -39,6 +43,19 @@ std::string workExceeded(const locate::SearchReport& report,
       "m: the fixed map is large for a guess as wide as this one; a narrower guess or a smaller "
       "fixed cloud is faster",
       report.work / options.max_work, report.cell);
+}
+
+void warnOfFlat(const correlation::MapSignals& fixed, const correlation::MapSignals& moving,
+                Monitor& monitor) {
+  const map::SignalTerm term = fixed.options().term;
+  if (term != map::SignalTerm::kAll && term != map::SignalTerm::kExgHeight) return;
+  for (const auto& [map, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
+    if (map->at(refine::kRankingFactor).has(map::kHeightChannel)) continue;
+    monitor.warn(
+        fmt::format("the {} cloud is flat: the maps are compared by their colours alone, and the "
+                    "height of the result is that of the ground planes",
+                    name));
+  }
 }
 
 InputError fitsAtNoScale(const Cloud& fixed, const Cloud& moving) {

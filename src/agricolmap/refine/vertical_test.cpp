@@ -148,5 +148,22 @@ TEST(Vertical, ATiltThatLevelledMapsCannotHaveIsRefused) {
       VerticalStatus::kTooSteep);
 }
 
+TEST(Vertical, DoubtsAHeightWhereNoGroundIsSeen) {
+  // From afar a canopy without gaps has no soil, from near it has: the lowest cells are not the
+  // same.
+  const map::GridMap closed = view(0.8, 0.0, 1.0, true, 1);
+  map::GridMap through = view(0.8, 0.0, 1.0, false, 2);
+  Random random(5);
+  for (std::size_t i = 0; i < through.height.size(); ++i) {
+    if (random.uniform() < 0.3) through.height[i] = static_cast<float>(random.normal(0.05));
+  }
+  const VerticalResult hidden = fitVertical(closed, through, Eigen::Affine2d::Identity(), {});
+  EXPECT_GT(hidden.deviation(), 0.5 * worstError(hidden));
+  EXPECT_GT(hidden.doubt, 0.05);
+  const VerticalResult clear = fitVertical(
+      view(0.8, 0.4, 0.5, true, 1), view(0.8, 0.4, 1.0, false, 2), Eigen::Affine2d::Identity(), {});
+  EXPECT_EQ(clear.doubt, 0.0);
+}
+
 }  // namespace
 }  // namespace agricolmap::refine
