@@ -9,7 +9,6 @@ namespace agricolmap::correlation {
 namespace {
 
 using testing::shifted;
-using testing::TestField;
 using testing::TestScene;
 
 constexpr int kFactor = 3;
