@@ -39,9 +39,9 @@ Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
     placed.evidence.decoys = refined.decoys;
     const map::SignalMap fixed = signals.fixedSignals(pose, kBlockFactor);
     const map::SignalMap& moving = signals.filled(kBlockFactor);
-    const double systematic =
-        std::hypot(refine::disagreementOfChannels(fixed, moving, pose, options.dense).value_or(0.0),
-                   options.uncertainty.lean * map::canopyHeight(signals.moving().grid()));
+    const double systematic = std::hypot(
+        refine::disagreementOfChannels(fixed, moving, pose, denseInForce(options)).value_or(0.0),
+        options.uncertainty.lean * map::canopyHeight(signals.moving().grid()));
     placed.uncertainty =
         verdict::estimateUncertainty(fixed, moving, pose, placed.evidence, space, systematic,
                                      placed.heights.deviation(), options.uncertainty);

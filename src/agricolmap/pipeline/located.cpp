@@ -21,8 +21,12 @@ constexpr double kClearScore = 20.0;
 
 /// How well mirrored copies of the moving map fit where they fit best.
 std::vector<double> fitOfDecoys(const PairMaps& maps, const refine::PairSignals& signals,
-                                locate::CorrelationOptions search, const locate::RowWaves& waves,
-                                const RegistrationOptions& options) {
+                                const locate::CorrelationOptions& chosen,
+                                const locate::RowWaves& waves, const RegistrationOptions& options) {
+  locate::CorrelationOptions search;
+  if (options.association == AssociationKind::kCorrelation) search = chosen;
+  search.filter = options.filter;
+  const refine::DenseRefineOptions dense = denseInForce(options);
   search.share = kDecoyShare;
   search.climbs = kDecoyClimbs;
   search.candidates = kDecoyCandidates;
@@ -36,7 +40,7 @@ std::vector<double> fitOfDecoys(const PairMaps& maps, const refine::PairSignals&
     std::vector<Eigen::Affine2d> starts;
     for (const Placement& placement : found.placements) starts.push_back(placement.pose);
     const refine::RankedPoses ranked =
-        refine::refineStarts(signals, starts, options.evidence.exclusion, options.dense);
+        refine::refineStarts(signals, starts, options.evidence.exclusion, dense);
     double highest = ranked.distinct.empty() ? 0.0 : ranked.distinct.front().significance;
     for (const Eigen::Affine2d& start : starts) {
       highest = std::max(highest, signals.score().significance(start));

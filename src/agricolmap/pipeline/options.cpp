@@ -145,6 +145,10 @@ RegistrationOptions resolved(const RegistrationOptions& chosen) {
   return options;
 }
 
+refine::DenseRefineOptions denseInForce(const RegistrationOptions& options) {
+  return refinesDensely(options) ? options.dense : refine::DenseRefineOptions{};
+}
+
 std::string missingFor(const RegistrationOptions& options, std::string_view path) {
   for (const Need& need : kNeeds) {
     const bool concerned =

@@ -51,6 +51,9 @@ struct RegistrationOptions {
 };
 void listOptions(OptionTable& table, RegistrationOptions& options);
 
+/// Of a chain that does not refine densely, where the verdict does it all the same: the defaults.
+refine::DenseRefineOptions denseInForce(const RegistrationOptions& options);
+
 /// The options as they are in force: what one of them decides for others is written there, so that
 /// what is reported is what was done. Whoever registers calls this first; calling it again changes
 /// nothing. Throws UsageError for values outside their limits, alone or beside one another.
