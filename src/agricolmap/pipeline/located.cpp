@@ -17,7 +17,7 @@ constexpr int kDecoyCandidates = 6;
 /// is a matter of luck.
 constexpr double kDecoyReach = 2.0;
 /// A place of this score needs no decoys, which reach about five and hardly ever eight.
-constexpr double kClearScore = 20.0;
+constexpr double kClearScore = 14.0;
 
 /// How well mirrored copies of the moving map fit where they fit best.
 std::vector<double> fitOfDecoys(const PairMaps& maps, const refine::PairSignals& signals,
