@@ -203,6 +203,9 @@ TEST(Pipeline, AMirroredStripIsRefusedAndNamedSo) {
   const pipeline::Registration result = registerPair(pair);
   EXPECT_EQ(result.verdict.status, verdict::Status::kRejected);
   EXPECT_LT(result.verdict.place_probability, 0.2);
+  EXPECT_NE(result.verdict.reasons.front().find("mirrored copy of the moving map fits far better"),
+            std::string::npos)
+      << result.verdict.reasons.front();
 }
 
 }  // namespace

@@ -68,8 +68,9 @@ struct Registration {
 
   Status status = Status::kRejected;
   std::vector<std::string> reasons;  ///< why, in plain words; never empty
-  double probability = 0.0;          ///< calibrated, that the result is within 5 cm RMS
+  double probability = 0.0;          ///< that the result is within 5 cm RMS
   double plane_probability = 0.0;    ///< that it is so in the plane, whatever the height
+  double place_probability = 0.0;    ///< calibrated, that it is the right place, however exact
 
   /// Moving file → fixed file coordinates [m]. A rejected registration may have one, too: the best
   /// that was found. Nothing: no place at all.

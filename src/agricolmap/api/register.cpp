@@ -96,6 +96,7 @@ Registration publicResult(const Cloud& fixed, const pipeline::Registration& foun
   result.reasons = found.verdict.reasons;
   result.probability = found.verdict.probability;
   result.plane_probability = found.verdict.plane_probability;
+  result.place_probability = found.verdict.place_probability;
   if (found.transform) {
     result.fixed_from_moving = found.transform->fixed_from_moving;
     result.parts = partsOf(*found.transform);

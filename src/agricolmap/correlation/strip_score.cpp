@@ -136,8 +136,9 @@ Raster<float> StripScore::around(const Template& piece, const Eigen::Vector2d& a
   Raster<float> scores(2 * reach + 1, 2 * reach + 1);
   const int row0 = static_cast<int>(std::lround(at.y())) + piece.first_row - reach;
   const int col0 = static_cast<int>(std::lround(at.x())) + piece.first_col - reach;
-  for (const int k : filter_.channels())
+  for (const int k : filter_.channels()) {
     addScores(piece.channel[k], filter_.whitened(k), row0, col0, scores);
+  }
   return scores;
 }
 

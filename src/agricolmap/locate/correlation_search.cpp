@@ -242,11 +242,12 @@ SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
 }
 
 std::vector<Eigen::Matrix2d> decoyMirrors(const correlation::MapSignals& moving,
-                                          const RowWaves& waves) {
+                                          const RowWaves& waves, const SearchSpace& space) {
   const Eigen::Vector2d across = waves.moving.empty() ? map::stripFrame(moving.at(1)).axes.col(1)
                                                       : waves.moving.front().vector;
   const Eigen::Vector2d normal = across.normalized();
   const Eigen::Matrix2d mirror = Eigen::Matrix2d::Identity() - 2.0 * normal * normal.transpose();
+  if (space.uncertainty.heading_deg >= 180.0) return {mirror};
   return {mirror, -mirror};
 }
 

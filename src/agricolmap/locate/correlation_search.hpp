@@ -66,9 +66,10 @@ SearchResult searchByCorrelation(const correlation::MapSignals& fixed,
 
 /// Reflections (see SearchSpace::mirror) that make decoys of the moving map: across its rows, or
 /// across the strip where it shows none, and along them. A decoy has the pair's own rows, plants,
-/// colours and growth, and no right place: it tells how high a wrong one scores.
+/// colours and growth, and no right place: it tells how high a wrong one scores. One of them is
+/// enough where `space` allows any heading: the other is the same turned end for end.
 std::vector<Eigen::Matrix2d> decoyMirrors(const correlation::MapSignals& moving,
-                                          const RowWaves& waves);
+                                          const RowWaves& waves, const SearchSpace& space);
 
 /// The options of the `attempt`-th search, from 0: a search that was not accepted is followed by
 /// finer and freer ones. Nothing when there is none left, or when it would find nothing new after

@@ -83,8 +83,11 @@ TEST(CorrelationSearch, MirroredCopiesOfTheStripFitNowhere) {
   space.centre = scene.middle;
   const double right =
       searchByCorrelation(fixed, moving, waves, space, {}).placements.front().score;
-  const std::vector<Eigen::Matrix2d> mirrors = decoyMirrors(moving, waves);
+  const std::vector<Eigen::Matrix2d> mirrors = decoyMirrors(moving, waves, space);
   ASSERT_EQ(mirrors.size(), 2U);
+  SearchSpace any = space;
+  any.uncertainty.heading_deg = 180.0;
+  EXPECT_EQ(decoyMirrors(moving, waves, any).size(), 1U);
   for (const Eigen::Matrix2d& mirror : mirrors) {
     EXPECT_LT(mirror.determinant(), 0.0);
     space.mirror = mirror;

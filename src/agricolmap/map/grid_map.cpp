@@ -262,6 +262,17 @@ double canopyHeight(const GridMap& map) {
   return std::max(0.0, static_cast<double>(quantile(std::move(heights), 0.9)));
 }
 
+bool hasRelief(const GridMap& map) {
+  constexpr float kRounding = 2e-3F;  // [m]
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (std::size_t i = 0; i < map.weight.size(); ++i) {
+    if (!map.valid(i)) continue;
+    low = std::min(low, map.height[i]);
+    high = std::max(high, map.height[i]);
+  }
+  return high - low > kRounding;
+}
+
 GridMap croppedMap(const GridMap& map, const Box2& window) {
   const Eigen::Vector2d low = map.frame.cellOf(window.min());
   const Eigen::Vector2d high = map.frame.cellOf(window.max());

@@ -65,6 +65,9 @@ GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_loc
 /// How tall the plants are [m]: height above the ground that a tenth of the seen cells surpass.
 double canopyHeight(const GridMap& map);
 
+/// Whether heights of the map differ by more than what rounding makes of a flat cloud's.
+bool hasRelief(const GridMap& map);
+
 /// The part of a map whose cells touch `window`; `points` stays the whole map's.
 GridMap croppedMap(const GridMap& map, const Box2& window);
 

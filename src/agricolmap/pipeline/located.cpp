@@ -31,7 +31,7 @@ std::vector<double> fitOfDecoys(const PairMaps& maps, const refine::PairSignals&
   search.climbs = kDecoyClimbs;
   search.candidates = kDecoyCandidates;
   std::vector<double> significances;
-  for (const Eigen::Matrix2d& mirror : locate::decoyMirrors(signals.moving(), waves)) {
+  for (const Eigen::Matrix2d& mirror : locate::decoyMirrors(signals.moving(), waves, maps.space)) {
     SearchSpace space = maps.space;
     space.mirror = mirror;
     space.uncertainty.translation = std::max(space.uncertainty.translation, kDecoyReach);

@@ -53,7 +53,6 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
   const refine::PairSignals signals = signalsOf(fixed, moving, options, monitor);
   const locate::RowWaves waves =
       monitor.run(Stage::kSignals, [&] { return locate::rowWaves(fixed, moving); });
-  warnOfFlat(fixed, moving, monitor);
   Outcome best;
   std::optional<locate::SearchReport> last;
   for (std::size_t attempt = 0; attempt < most; ++attempt) {
@@ -113,6 +112,7 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   const RegistrationOptions options = resolved(chosen);
   requireUsable(fixed, moving, options, locator != nullptr);
   PairMaps maps = mapPair(fixed, moving, guess, options, monitor);
+  warnOfFlat(maps.fixed, maps.moving, options.signal, monitor);
   auto [outcome, scale] =
       options.prior.scale_unknown
           ? placeAtAnyScale(fixed, moving, guess, options, locator, monitor, maps)

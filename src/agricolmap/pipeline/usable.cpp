@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "agricolmap/refine/pair_signals.hpp"
-
 namespace agricolmap::pipeline {
 namespace {
 
@@ -45,12 +43,11 @@ std::string workExceeded(const locate::SearchReport& report,
       report.work / options.max_work, report.cell);
 }
 
-void warnOfFlat(const correlation::MapSignals& fixed, const correlation::MapSignals& moving,
-                Monitor& monitor) {
-  const map::SignalTerm term = fixed.options().term;
-  if (term != map::SignalTerm::kAll && term != map::SignalTerm::kExgHeight) return;
+void warnOfFlat(const map::GridMap& fixed, const map::GridMap& moving,
+                const map::SignalOptions& signal, Monitor& monitor) {
+  if (signal.term != map::SignalTerm::kAll && signal.term != map::SignalTerm::kExgHeight) return;
   for (const auto& [map, name] : {std::pair{&fixed, "fixed"}, {&moving, "moving"}}) {
-    if (map->at(refine::kRankingFactor).has(map::kHeightChannel)) continue;
+    if (map::hasRelief(*map)) continue;
     monitor.warn(
         fmt::format("the {} cloud is flat: the maps are compared by their colours alone, and the "
                     "height of the result is that of the ground planes",

@@ -16,10 +16,10 @@ void requireUsable(const Cloud& fixed, const Cloud& moving, const RegistrationOp
 std::string workExceeded(const locate::SearchReport& report,
                          const locate::CorrelationOptions& options);
 
-/// Warns when one of the maps has no heights, as an orthomosaic laid flat: then colours alone are
-/// compared, and the heights of the result are those of the ground planes.
-void warnOfFlat(const correlation::MapSignals& fixed, const correlation::MapSignals& moving,
-                Monitor& monitor);
+/// Warns when one of the maps has no heights to compare, as an orthomosaic laid flat: then colours
+/// alone are, and the heights of the result are those of the ground planes.
+void warnOfFlat(const map::GridMap& fixed, const map::GridMap& moving,
+                const map::SignalOptions& signal, Monitor& monitor);
 
 /// Why a moving file of unknown scale was not even looked for.
 InputError fitsAtNoScale(const Cloud& fixed, const Cloud& moving);

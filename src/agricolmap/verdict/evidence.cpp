@@ -21,6 +21,8 @@ void listOptions(OptionTable& table, EvidenceOptions& options) {
 
 namespace {
 
+/// What decoys hardly ever surpass, for a place that was not measured against them.
+constexpr double kHighestDecoy = 8.0;
 constexpr double kMinSeenShare = 0.3;  // of a block's area, in both maps
 /// As many blocks as a share of agreeing ones needs to mean something, and their least side [m]:
 /// smaller ones hold too little to be placed alone.
@@ -87,9 +89,8 @@ std::optional<BlockEvidence> placeBlock(const correlation::StripScore& score,
 }  // namespace
 
 double Evidence::decoyRatio() const {
-  double highest = 1.0;
-  for (const double decoy : decoys) highest = std::max(highest, decoy);
-  return significance / highest;
+  if (decoys.empty()) return significance / kHighestDecoy;
+  return significance / std::max(1.0, *std::max_element(decoys.begin(), decoys.end()));
 }
 
 double blockSide(const map::StripFrame& strip, const EvidenceOptions& options) {

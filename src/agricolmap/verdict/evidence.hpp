@@ -39,9 +39,9 @@ struct Evidence {
   Eigen::Vector2d block_size = Eigen::Vector2d::Zero();  ///< as cut, along and across [m]
   std::vector<BlockEvidence> blocks;  ///< those with enough seen cells in both maps
   std::size_t agreeing = 0;
-  /// Peak over that of the best decoy; over one deviation when there is none.
-  double decoyRatio() const;
   PartsReport parts;  ///< that lie elsewhere than the pose says
+  /// Peak over that of the best decoy; where there is none, over what decoys hardly ever surpass.
+  double decoyRatio() const;
   double agreement() const {
     return blocks.empty() ? 0.0
                           : static_cast<double>(agreeing) / static_cast<double>(blocks.size());

@@ -105,6 +105,13 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
                                 const VerdictOptions& options) {
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> against;
+  const bool mirrored =
+      evidence.decoyRatio() < kMirroredDecoy && evidence.significance < options.min_fit;
+  if (mirrored) {
+    against.push_back(
+        "a mirrored copy of the moving map fits far better than the map itself: its axes may be "
+        "left-handed, or one of them turned round");
+  }
   if (!evidence.parts.displaced.empty()) {
     against.push_back(describe(evidence.parts) + ": register the strip in parts");
   }
@@ -114,11 +121,7 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
                     "highest other one",
                     evidence.uniqueness));
   }
-  if (evidence.decoyRatio() < kMirroredDecoy && evidence.significance < options.min_fit) {
-    against.push_back(
-        "a mirrored copy of the moving map fits far better than the map itself: its axes may be "
-        "left-handed, or one of them turned round");
-  } else if (evidence.decoyRatio() < kWeakDecoy) {
+  if (!mirrored && !evidence.decoys.empty() && evidence.decoyRatio() < kWeakDecoy) {
     against.push_back(
         fmt::format("a mirrored copy of the moving map, which fits nowhere, fits almost as well: "
                     "the peak is {:.2f} times its highest one",
@@ -132,7 +135,9 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
   if (!(error < kLargeError)) {
     against.push_back(
         std::isfinite(error)
-            ? fmt::format("the blocks of the strip disagree with it by {:.1f} cm RMS", 100 * error)
+            ? fmt::format("an error of {:.1f} cm RMS is to be expected: so far do the "
+                          "strip's blocks, and plants and soil, pull apart",
+                          100 * error)
             : std::string("too few blocks of the strip can be compared"));
   }
   if (probability < options.min_probability) {
