@@ -68,6 +68,12 @@ std::string percent(double probability) {
 std::vector<std::string> contradictions(const Finding& finding, const SearchSpace& space,
                                         const VerdictOptions& options) {
   std::vector<std::string> against;
+  if (!finding.evidence.decoys.empty() && finding.evidence.decoyRatio() < kMirroredDecoy &&
+      finding.evidence.significance < options.min_fit) {
+    against.emplace_back(
+        "a mirrored copy of the moving map fits far better than the map itself: its axes may be "
+        "left-handed, or one of them turned round");
+  }
   if (finding.overlap < options.min_overlap) {
     against.push_back(
         fmt::format("only {:.0f} % of the moving map lies on the fixed map (at least "
@@ -105,13 +111,6 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
                                 const VerdictOptions& options) {
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> against;
-  const bool mirrored =
-      evidence.decoyRatio() < kMirroredDecoy && evidence.significance < options.min_fit;
-  if (mirrored) {
-    against.push_back(
-        "a mirrored copy of the moving map fits far better than the map itself: its axes may be "
-        "left-handed, or one of them turned round");
-  }
   if (!evidence.parts.displaced.empty()) {
     against.push_back(describe(evidence.parts) + ": register the strip in parts");
   }
@@ -121,7 +120,7 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
                     "highest other one",
                     evidence.uniqueness));
   }
-  if (!mirrored && !evidence.decoys.empty() && evidence.decoyRatio() < kWeakDecoy) {
+  if (!evidence.decoys.empty() && evidence.decoyRatio() < kWeakDecoy) {
     against.push_back(
         fmt::format("a mirrored copy of the moving map, which fits nowhere, fits almost as well: "
                     "the peak is {:.2f} times its highest one",

@@ -12,6 +12,7 @@ namespace agricolmap::verdict {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A registration that everything speaks for.
 Finding clearFinding() {
@@ -56,6 +57,28 @@ TEST(Verdict, ChanceIsRejectedThoughItsRivalsAreEqual) {
   EXPECT_EQ(verdict.status, Status::kRejected);
   EXPECT_LT(verdict.probability, 0.05);
   EXPECT_THAT(verdict.reasons.front(), HasSubstr("another place fits almost as well"));
+}
+
+TEST(Verdict, AFileThatIsMirroredIsNamedFirst) {
+  Finding mirrored = chanceFinding();
+  mirrored.evidence.decoys = {27.0, 4.6};
+  mirrored.overlap = 0.1;  // of the wrong place, which says nothing
+  const Verdict verdict = judge(mirrored, {}, {});
+  EXPECT_EQ(verdict.status, Status::kRejected);
+  EXPECT_THAT(verdict.reasons.front(), HasSubstr("mirrored copy"));
+  // What was not measured accuses nobody.
+  mirrored.evidence.decoys.clear();
+  EXPECT_THAT(judge(mirrored, {}, {}).reasons.front(), Not(HasSubstr("mirrored copy")));
+}
+
+TEST(Verdict, APlaceWithoutDecoysCountsAsIfTheyHadReachedWhatTheyHardlyEverDo) {
+  Finding finding = clearFinding();
+  const double measured = judge(finding, {}, {}).place_probability;
+  finding.evidence.decoys.clear();
+  EXPECT_LT(judge(finding, {}, {}).place_probability, measured);
+  EXPECT_EQ(judge(finding, {}, {}).status, Status::kAccepted);
+  finding.evidence.significance = 6.0;
+  EXPECT_LT(finding.evidence.decoyRatio(), 1.0);
 }
 
 TEST(Verdict, EqualPlacesThatFitAreAmbiguous) {
