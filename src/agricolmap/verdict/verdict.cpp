@@ -168,11 +168,13 @@ std::vector<std::string> support(const Finding& finding, double plane, double al
                                   100 * evidence.parts.rms));
   }
   if (finding.uncertainty) {
+    const PoseUncertainty& error = *finding.uncertainty;
     reasons.push_back(fmt::format(
         "expected error {:.1f} cm RMS in the plane ({:.1f} cm of it systematic) and {:.1f} cm in "
-        "height; {:.1f} cm of local deformation remain that no affine undoes",
-        100 * finding.uncertainty->expected_rms, 100 * finding.uncertainty->systematic_rms,
-        100 * finding.uncertainty->height_deviation, 100 * finding.uncertainty->local_rms));
+        "height",
+        100 * error.expected_rms, 100 * error.systematic_rms, 100 * error.height_deviation));
+    reasons.push_back(fmt::format("{:.1f} cm of local deformation remain that no affine undoes",
+                                  100 * error.local_rms));
   }
   return reasons;
 }
