@@ -50,8 +50,10 @@ LoadedPair load(const RegisterArguments& arguments) {
 void printSummary(const pipeline::Registration& result, const std::string& directory) {
   fmt::print("{}\n", toString(result.verdict.status));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
-  if (result.verdict.status == verdict::Status::kAmbiguous) {
-    fmt::print("  (the guess: --prior, --prior-sigma)\n");
+  if (!result.verdict.remedies.empty()) {
+    fmt::print(
+        "what may help (the guess: --prior; how good it is: --prior-sigma, --scale-unknown)\n");
+    for (const std::string& remedy : result.verdict.remedies) fmt::print("  {}\n", remedy);
   }
   if (result.transform) {
     const pipeline::Transform& transform = *result.transform;

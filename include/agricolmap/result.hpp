@@ -67,10 +67,11 @@ struct Registration {
   bool accepted() const { return status == Status::kAccepted; }
 
   Status status = Status::kRejected;
-  std::vector<std::string> reasons;  ///< why, in plain words; never empty
-  double probability = 0.0;          ///< that the result is within 5 cm RMS
-  double plane_probability = 0.0;    ///< that it is so in the plane, whatever the height
-  double place_probability = 0.0;    ///< calibrated, that it is the right place, however exact
+  std::vector<std::string> reasons;   ///< why, in plain words; never empty
+  std::vector<std::string> remedies;  ///< what may help where it is not accepted
+  double probability = 0.0;           ///< that the result is within 5 cm RMS
+  double plane_probability = 0.0;     ///< that it is so in the plane, whatever the height
+  double place_probability = 0.0;     ///< calibrated, that it is the right place, however exact
 
   /// Moving file → fixed file coordinates [m]. A rejected registration may have one, too: the best
   /// that was found. Nothing: no place at all.

@@ -94,6 +94,7 @@ Registration publicResult(const Cloud& fixed, const pipeline::Registration& foun
   Registration result;
   result.status = statusOf(found.verdict.status);
   result.reasons = found.verdict.reasons;
+  result.remedies = found.verdict.remedies;
   result.probability = found.verdict.probability;
   result.plane_probability = found.verdict.plane_probability;
   result.place_probability = found.verdict.place_probability;

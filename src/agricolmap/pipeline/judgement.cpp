@@ -5,6 +5,7 @@
 
 #include "agricolmap/refine/channel_poses.hpp"
 #include "agricolmap/refine/fit.hpp"
+#include "agricolmap/verdict/remedies.hpp"
 #include "agricolmap/verdict/straighten.hpp"
 
 namespace agricolmap::pipeline {
@@ -110,6 +111,7 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
                            .rivals = {}};
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
+  verdict.remedies = verdict::remediesFor(verdict, finding, space, options.verdict);
   if (options.association != AssociationKind::kCorrelation ||
       options.refine != RefineKind::kDense) {
     verdict.reasons.emplace_back(

@@ -6,6 +6,7 @@
 #include "agricolmap/pipeline/compose.hpp"
 #include "agricolmap/pipeline/unknown_scale.hpp"
 #include "agricolmap/pipeline/usable.hpp"
+#include "agricolmap/verdict/remedies.hpp"
 
 namespace agricolmap::pipeline {
 namespace {
@@ -35,6 +36,7 @@ Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located
                    .straightened = {}};
   if (!refined.best) {
     outcome.verdict = verdict::rejectBecause(refined.failure);
+    outcome.verdict.remedies = verdict::remediesForNothing(maps.space);
     return outcome;
   }
   if (rivals) refined.rivals = *std::move(rivals);

@@ -249,6 +249,7 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
+  json["remedies"] = stringsJson(registration.verdict.remedies);
   json["warnings"] = stringsJson(warningsOf(fixed, moving, monitor));
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
