@@ -29,6 +29,7 @@ struct DisplacedPart {
 
 struct PartsReport {
   double length = 0.0;  ///< of the strip [m]
+  double turn = 0.0;    ///< of the levelled frame against the compass, see SearchSpace [rad]
   /// From the low end to the high end as the pose lays them, fixed levelled frame, unit length.
   Eigen::Vector2d along = Eigen::Vector2d::UnitX();
   std::vector<DisplacedPart> displaced;  ///< in order along the strip; empty: none is

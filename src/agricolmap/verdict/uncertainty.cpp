@@ -45,11 +45,14 @@ Eigen::Matrix<double, 2, 5> PoseUncertainty::jacobian(const Eigen::Vector2d& fix
   return j;
 }
 
-Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight() const {
+Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight(double turn) const {
   // Between the shifts in the plane and the heading stands the height, which hangs on none of them.
   constexpr std::array<int, kParameters> kPlace = {0, 1, 3, 4, 5};
   Eigen::Matrix<double, 6, 6> with_height = Eigen::Matrix<double, 6, 6>::Zero();
-  with_height(kPlace, kPlace) = covariance;
+  Eigen::Matrix<double, kParameters, kParameters> back =
+      Eigen::Matrix<double, kParameters, kParameters>::Identity();
+  back.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-turn).toRotationMatrix();
+  with_height(kPlace, kPlace) = back * covariance * back.transpose();
   with_height(2, 2) = height_deviation * height_deviation;
   return with_height;
 }

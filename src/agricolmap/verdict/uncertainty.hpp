@@ -42,8 +42,9 @@ struct PoseUncertainty {
   double systematic_rms = 0.0;
   double local_rms = 0.0;  ///< what the blocks differ by after the best affine: drift, wind [m]
 
-  /// With the height among the shifts: of (δx, δy, δz [m], δψ [rad], δa, δb).
-  Eigen::Matrix<double, 6, 6> covarianceWithHeight() const;
+  /// With the height among the shifts: of (δx, δy, δz [m], δψ [rad], δa, δb), along the axes of a
+  /// frame against which the levelled one is turned by `turn` [rad].
+  Eigen::Matrix<double, 6, 6> covarianceWithHeight(double turn = 0.0) const;
   /// Derivative of a point's displacement to the five parameters.
   Eigen::Matrix<double, 2, 5> jacobian(const Eigen::Vector2d& fixed) const;
   /// Covariance of a point's horizontal position [m²].
