@@ -41,6 +41,7 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
   table.group("vegetation", options.vegetation, "telling plants from soil (refine = cpd)");
   table.group("cpd", options.cpd, "coherent point drift (refine = cpd)");
   table.group("vertical", options.vertical, "tilt and height");
+  table.group("deform", options.deform, "following a strip that bends or slipped (refine = dense)");
   table.group("evidence", options.evidence, "what the verdict rests on");
   table.group("uncertainty", options.uncertainty, "the stated error");
   table.group("verdict", options.verdict, "when a registration is accepted");
@@ -56,6 +57,9 @@ bool flows(const RegistrationOptions& options) {
 }
 bool refinesDensely(const RegistrationOptions& options) {
   return options.refine == RefineKind::kDense;
+}
+bool followsBends(const RegistrationOptions& options) {
+  return options.deform.kind == deform::DeformKind::kPath;
 }
 bool refinesByPoints(const RegistrationOptions& options) {
   return options.refine == RefineKind::kCpd;
@@ -83,6 +87,10 @@ constexpr std::array kNeeds = {
     Need{"affine.", flows, "association = flow"},
     Need{"dense.", refinesDensely, "refine = dense"},
     Need{"straighten", refinesDensely, "refine = dense"},
+    Need{"deform.", refinesDensely, "refine = dense"},
+    Need{"deform.node", followsBends, "deform.kind = path"},
+    Need{"deform.min_gain", followsBends, "deform.kind = path"},
+    Need{"deform.min_rise", followsBends, "deform.kind = path"},
     Need{"vegetation.", refinesByPoints, "refine = cpd"},
     Need{"cpd.", refinesByPoints, "refine = cpd"},
     Need{"flow.vote.coarse", votesForPoses, "flow.vote.kind = pose"},

@@ -4,6 +4,7 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/pipeline/attempts.hpp"
 #include "agricolmap/pipeline/compose.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/pipeline/unknown_scale.hpp"
 #include "agricolmap/pipeline/usable.hpp"
 
@@ -40,6 +41,7 @@ Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located
   if (rivals) refined.rivals = *std::move(rivals);
   Measured measured = measureStraightened(signals, maps.space, refined, options, monitor);
   outcome.trace.straightened = measured.straightened;
+  followBends(signals, maps.space, refined, options, monitor, measured.placed);
   outcome.rivals = std::move(refined.rivals);
   outcome.verdict = judgePlaced(measured.placed, outcome.rivals, maps.space, options);
   outcome.placed = std::move(measured.placed);
