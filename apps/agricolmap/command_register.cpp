@@ -13,6 +13,7 @@
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/path_file.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/report/json/registration_json.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
@@ -105,11 +106,8 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
   if (keep) {
     monitor.run(Stage::kWrite, [&] {
       io::writeMatrix(output.path("transform.txt"), result.transform->fixed_from_moving);
-      if (result.maps.bend) {
-        io::writePly(output.path("aligned.ply"),
-                     pieces::bentCloud(pair.moving, result.maps.frames.levelled_from_moving,
-                                       *result.maps.bend),
-                     result.transform->fixed_from_bent);
+      if (result.bent()) {
+        io::writePly(output.path("aligned.ply"), pipeline::alignedCloud(result, pair.moving));
       } else {
         io::writePly(output.path("aligned.ply"), pair.moving, result.transform->fixed_from_moving);
       }

@@ -42,6 +42,7 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
   table.group("vegetation", options.vegetation, "telling plants from soil (refine = cpd)");
   table.group("cpd", options.cpd, "coherent point drift (refine = cpd)");
   table.group("vertical", options.vertical, "tilt and height");
+  table.group("deform", options.deform, "following a strip that bends or slipped (refine = dense)");
   table.group("evidence", options.evidence, "what the verdict rests on");
   table.group("uncertainty", options.uncertainty, "the stated error");
   table.group("verdict", options.verdict, "when a registration is accepted");
@@ -60,6 +61,9 @@ bool refinesDensely(const RegistrationOptions& options) {
 }
 bool isDefaultChain(const RegistrationOptions& options) {
   return correlates(options) && refinesDensely(options);
+}
+bool followsBends(const RegistrationOptions& options) {
+  return options.deform.kind == deform::DeformKind::kPath;
 }
 bool refinesByPoints(const RegistrationOptions& options) {
   return options.refine == RefineKind::kCpd;
@@ -88,6 +92,10 @@ constexpr std::array kNeeds = {
     Need{"affine.", flows, "association = flow"},
     Need{"dense.", refinesDensely, "refine = dense"},
     Need{"straighten", refinesDensely, "refine = dense"},
+    Need{"deform.", refinesDensely, "refine = dense"},
+    Need{"deform.node", followsBends, "deform.kind = path"},
+    Need{"deform.min_gain", followsBends, "deform.kind = path"},
+    Need{"deform.min_rise", followsBends, "deform.kind = path"},
     Need{"vegetation.", refinesByPoints, "refine = cpd"},
     Need{"cpd.", refinesByPoints, "refine = cpd"},
     Need{"flow.vote.coarse", votesForPoses, "flow.vote.kind = pose"},

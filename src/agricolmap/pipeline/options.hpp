@@ -7,6 +7,7 @@
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/search_space.hpp"
+#include "agricolmap/deform/deform.hpp"
 #include "agricolmap/locate/correlation_search.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/map/hidden_ground.hpp"
@@ -47,6 +48,7 @@ struct RegistrationOptions {
   map::VegetationOptions vegetation;
   paper::CpdOptions cpd;
   refine::VerticalOptions vertical;
+  deform::DeformOptions deform;
   verdict::EvidenceOptions evidence;
   verdict::UncertaintyOptions uncertainty;
   verdict::VerdictOptions verdict;

@@ -4,6 +4,7 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/pipeline/attempts.hpp"
 #include "agricolmap/pipeline/compose.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/pipeline/long_strip.hpp"
 #include "agricolmap/pipeline/unknown_scale.hpp"
 #include "agricolmap/pipeline/usable.hpp"
@@ -45,6 +46,7 @@ Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located
   if (rivals) refined.rivals = *std::move(rivals);
   Measured measured = measureStraightened(signals, maps.space, refined, options, monitor);
   outcome.trace.straightened = measured.straightened;
+  followBends(signals, maps.space, refined, options, monitor, measured.placed);
   outcome.rivals = std::move(refined.rivals);
   outcome.verdict = judgePlaced(measured.placed, outcome.rivals, maps.space, options);
   outcome.placed = std::move(measured.placed);
@@ -87,11 +89,14 @@ std::optional<Anchor> placeAnchor(const PairMaps& maps, const deform::Path& path
                                   const map::SignalMap& moving, const RegistrationOptions& options,
                                   Monitor& monitor) {
   std::optional<Anchor> best;
+  // A piece is short: what bends it is not worth the time here.
+  RegistrationOptions stiff = options;
+  stiff.deform.kind = deform::DeformKind::kNone;
   for (const double along : anchorsOf(path, moving, options)) {
     const std::optional<PairMaps> piece = mapsOfPiece(maps, path, along, options);
     if (!piece) continue;
     const correlation::MapSignals fixed(piece->fixed, options.signal);
-    Outcome next = place(*piece, fixed, locate::kMostAttempts, options, {}, monitor);
+    Outcome next = place(*piece, fixed, locate::kMostAttempts, stiff, {}, monitor);
     if (!best || better(next, best->outcome)) best = Anchor{along, std::move(next)};
     if (best->outcome.verdict.status == verdict::Status::kAccepted) break;
   }

@@ -66,6 +66,10 @@ struct Registration {
   std::vector<Alternative> alternatives;
   Trace trace;
   PairMaps maps;  ///< for pictures and reports
+
+  /// Whether the moving cloud is laid by more than the transform: pieces of a long strip, or a bend
+  /// that is followed.
+  bool bent() const { return maps.bend.has_value() || (placed && placed->followed); }
 };
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.

@@ -29,6 +29,8 @@ namespace {
 constexpr std::size_t kLeastBlocks = 4;
 constexpr int kParameters = 5;
 constexpr double kLeastRadius = 0.5;  // [m]
+/// Per axis, of what is left when nothing disagrees along a strip [m]; from calibration.
+constexpr double kCommon = 0.003;
 
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Square = Eigen::Matrix<double, kParameters, kParameters>;
@@ -55,6 +57,11 @@ Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight(double turn) c
   with_height(kPlace, kPlace) = back * covariance * back.transpose();
   with_height(2, 2) = height_deviation * height_deviation;
   return with_height;
+}
+
+Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix2d& of_fit) {
+  const double common = 0.5 * pose.systematic_rms * pose.systematic_rms + kCommon * kCommon;
+  return of_fit + common * Eigen::Matrix2d::Identity();
 }
 
 namespace {

@@ -54,6 +54,10 @@ struct PoseUncertainty {
   }
 };
 
+/// Covariance of a place of a strip whose bend is followed [m²]: what the fit of the bend says of
+/// it, and what all blocks may have in common.
+Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix2d& of_fit);
+
 /// Nothing when too few blocks can be compared. `fixed`, `moving`: of the same cell size, fine
 /// enough for centimetres. `systematic`: error that all blocks may have in common,
 /// `height_residual`: deviation of the ground's heights [m].
