@@ -1,10 +1,13 @@
 #include "agricolmap/pipeline/judgement.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
 #include "agricolmap/refine/channel_poses.hpp"
 #include "agricolmap/refine/fit.hpp"
+#include "agricolmap/verdict/sides.hpp"
 #include "agricolmap/verdict/straighten.hpp"
 
 namespace agricolmap::pipeline {
@@ -111,6 +114,11 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
   if (placed.followed) verdict.reasons.push_back(describe(placed.followed->bend));
+  if (const auto apart = verdict::sidesApart(placed.evidence)) {
+    verdict.reasons.push_back(fmt::format(
+        "the strip's two sides lie {:.0f} cm apart: if the robot passed twice, give its path",
+        100.0 * *apart));
+  }
   if (options.association != AssociationKind::kCorrelation ||
       options.refine != RefineKind::kDense) {
     verdict.reasons.emplace_back(

@@ -29,8 +29,9 @@ constexpr double kMostAside = 10.0;
 /// Fewer pieces tell no bend in height.
 constexpr std::size_t kLeastLifted = 4;
 
-/// Leaves the cells from `from` to `to` along the path [m].
-void keepPiece(const deform::Path& path, double from, double to, map::GridMap& map) {
+/// Leaves the cells from `from` to `to` along the path [m]; returns their bounds.
+map::Box2 keepPiece(const deform::Path& path, double from, double to, map::GridMap& map) {
+  map::Box2 box;
   map.filled = 0;
   for (int r = 0; r < map.frame.rows; ++r) {
     for (int c = 0; c < map.frame.cols; ++c) {
@@ -41,9 +42,11 @@ void keepPiece(const deform::Path& path, double from, double to, map::GridMap& m
         weight = 0.0F;
       } else {
         ++map.filled;
+        box.extend(map.frame.centre(r, c));
       }
     }
   }
+  return box;
 }
 
 /// Bounds of the path from `from` to `to` and what is so near to it [m].
@@ -119,16 +122,20 @@ void liftPieces(const refine::PairSignals& signals, const deform::Path& path,
 }  // namespace
 
 std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen::Vector3d>& places,
-                                   const PairMaps& maps, const map::SignalMap& signals,
-                                   const RegistrationOptions& options, Monitor& monitor) {
+                                   const PairMaps& maps, const RegistrationOptions& options,
+                                   Monitor& monitor) {
+  const bool is_long = maps.moving_box.sizes().norm() > options.pieces.from;
   if (!placesByPieces(options)) {
-    if (!places.empty()) monitor.warn("the path is used by the default chain alone, not by this");
+    if (!places.empty()) monitor.warn("the path makes no difference to any but the default chain");
     return std::nullopt;
   }
+  if (places.empty() && !is_long) return std::nullopt;
+  const map::SignalMap signals =
+      map::makeSignalMap(maps.moving, refine::kRankingFactor, options.signal);
   if (places.empty()) {
     pieces::ShapePath shape = pieces::pathOfShape(signals);
-    const double extent = 2.0 * map::stripFrame(signals).half_extent.x();
-    if (!shape.path && extent > options.pieces.from) monitor.warn(shape.why_not);
+    if (!shape.path) monitor.warn(shape.why_not);
+    if (shape.path && shape.path->length() <= options.pieces.from) return std::nullopt;
     return shape.path;
   }
   std::vector<Eigen::Vector2d> levelled;
@@ -143,7 +150,12 @@ std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen:
         "other, and what both saw counts for the nearer one",
         100.0 * twice));
   }
-  return path;
+  if (path.length() > options.search.max_length) return path;
+  monitor.warn(
+      fmt::format("the path makes no difference: strips of no more than {:g} m are placed "
+                  "as a whole",
+                  options.search.max_length));
+  return std::nullopt;
 }
 
 std::vector<double> anchorsOf(const deform::Path& path, const map::SignalMap& signals,
@@ -199,10 +211,11 @@ std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& p
   piece.frames = whole.frames;
   piece.fixed_box = whole.fixed_box;
   piece.grid = whole.grid;
-  const map::Box2 around = boundsOf(path, along - half, along + half, std::min(near, kSide));
-  piece.moving = map::croppedMap(whole.moving, around);
-  keepPiece(path, along - half, along + half, piece.moving);
-  piece.moving_box = around;
+  piece.moving = map::croppedMap(whole.moving,
+                                 boundsOf(path, along - half, along + half, std::min(near, kSide)));
+  piece.moving_box = keepPiece(path, along - half, along + half, piece.moving);
+  if (piece.moving_box.isEmpty()) return std::nullopt;
+  piece.moving = map::croppedMap(piece.moving, piece.moving_box);
   piece.space = whole.space;
   piece.space.centre = path.point(along);
   // What a wrong heading and scale about the whole's middle moves the piece by.
@@ -211,11 +224,12 @@ std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& p
   const double swing =
       std::hypot(std::exp(logScaleLimit(uncertainty)) - 1.0, radians(uncertainty.heading_deg));
   if (!uncertainty.anywhere()) uncertainty.translation += arm * swing;
-  const map::Box2 window = reachableWindow(around, piece.space, 2.0 * options.signal.high_pass);
+  const map::Box2 window =
+      reachableWindow(piece.moving_box, piece.space, 2.0 * options.signal.high_pass);
   piece.fixed = uncertainty.anywhere() ? whole.fixed : map::croppedMap(whole.fixed, window);
   const bool seen = std::any_of(piece.fixed.weight.begin(), piece.fixed.weight.end(),
                                 [](float weight) { return weight > 0.0F; });
-  if (!seen || piece.moving.filled == 0) return std::nullopt;
+  if (!seen) return std::nullopt;
   return piece;
 }
 

@@ -13,12 +13,13 @@
 
 namespace agricolmap::pipeline {
 
-/// What the robot's path is taken for; nothing when the chain that the options choose places no
-/// strips by pieces. `places`: of the robot, in the moving file's coordinates, as its path; none:
-/// the strip's shape tells it. Where it does not, and the strip is long, a warning says so.
+/// The path along which the strip is placed by pieces; nothing where it is placed as a whole, being
+/// short or by another chain. `places`: of the robot, in the moving file's coordinates; none: the
+/// strip's shape tells its path. Warns where the strip is long and it does not, and where a path
+/// makes no difference.
 std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen::Vector3d>& places,
-                                   const PairMaps& maps, const map::SignalMap& signals,
-                                   const RegistrationOptions& options, Monitor& monitor);
+                                   const PairMaps& maps, const RegistrationOptions& options,
+                                   Monitor& monitor);
 
 /// Where along the path a piece is looked for first, second and so on, as if it were all there is
 /// [m]: pieces that show much, those in the middle before others when there is a guess, since a

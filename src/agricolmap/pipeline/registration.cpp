@@ -146,10 +146,9 @@ Outcome placeAlongPath(const Cloud& moving, const std::vector<Eigen::Vector3d>& 
                        const RegistrationOptions& options, const Locator& locator, Monitor& monitor,
                        PairMaps& maps) {
   if (!locator) {
-    const map::SignalMap signals =
-        map::makeSignalMap(maps.moving, refine::kRankingFactor, options.signal);
-    const auto path = pathOf(moving, places, maps, signals, options, monitor);
-    if (path && path->length() > options.pieces.from) {
+    const auto path = monitor.run(Stage::kSignals,
+                                  [&] { return pathOf(moving, places, maps, options, monitor); });
+    if (path) {
       auto outcome = placeByPieces(moving, *path, options, monitor, maps);
       if (outcome) return *std::move(outcome);
     }
