@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
@@ -41,6 +43,46 @@ TEST(Pipeline, FindsTheTruthInUtmCoordinates) {
   // The initial guess was not already that good.
   EXPECT_GT(evaluate::evaluateTransform(pair.prior, {pair.best_affine, pair.truth}, pair.ugv).rms,
             0.5);
+}
+
+/// Placed by pieces, and what drift bent is followed, on one thread as on several.
+TEST(Pipeline, FollowsALongStripPieceByPiece) {
+  simulate::SimulationOptions options = simulate::cropPreset(simulate::Crop::kSugarBeet10m);
+  options.field.width = options.field.height = 34.0;
+  options.uav.gsd = 0.03;
+  options.uav.canvas = 0.015;
+  options.ugv.length = 28.0;
+  options.ugv.width = 1.8;
+  options.ugv.spacing = 0.012;
+  options.ugv.drift = 0.03;
+  options.seed = 11;
+  const simulate::SimulatedPair pair = simulate::simulatePair(options);
+  const pipeline::Registration result = registerPair(pair);
+  EXPECT_EQ(result.verdict.status, verdict::Status::kAccepted) << result.verdict.reasons.front();
+  EXPECT_GT(result.trace.pieces.size(), 4U);
+  ASSERT_TRUE(result.transform);
+  const auto rmsOf = [&](const Cloud& cloud, const Eigen::Affine3d& transform) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      sum += (transform * cloud.filePoint(i) - pair.truth[i]).head<2>().squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(cloud.size()));
+  };
+  const double best = rmsOf(pair.ugv, pair.best_affine);
+  EXPECT_GT(best, 0.04);
+  EXPECT_LT(rmsOf(pair.ugv, result.transform->fixed_from_moving), 1.2 * best);
+  const Cloud aligned = pipeline::alignedCloud(result, pair.ugv);
+  EXPECT_LT(rmsOf(aligned, Eigen::Affine3d::Identity()), 0.5 * best);
+  const ThreadLimit limit(1);
+  const pipeline::Registration alone = registerPair(pair);
+  ASSERT_TRUE(alone.transform);
+  EXPECT_EQ(alone.transform->fixed_from_moving.matrix(),
+            result.transform->fixed_from_moving.matrix());
+  // The path of its odometry serves as well as its shape.
+  Monitor monitor;
+  const pipeline::Registration with_path = pipeline::registerClouds(
+      pair.uav, pair.ugv, pair.prior, pipeline::preset("default"), monitor, {}, pair.path);
+  EXPECT_EQ(with_path.verdict.status, verdict::Status::kAccepted);
 }
 
 TEST(Pipeline, ItsStagesAddUpToTheTimeItTook) {

@@ -12,6 +12,8 @@
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/io/text/path_file.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/report/json/registration_json.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
@@ -26,6 +28,7 @@ struct RegisterArguments {
   std::string moving;
   std::string output;
   std::string prior;
+  std::string path;
   bool dump_config = false;
   bool keep_rejected = false;
   bool no_pictures = false;
@@ -105,7 +108,11 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
   if (keep) {
     monitor.run(Stage::kWrite, [&] {
       io::writeMatrix(output.path("transform.txt"), result.transform->fixed_from_moving);
-      io::writePly(output.path("aligned.ply"), pair.moving, result.transform->fixed_from_moving);
+      if (result.bent()) {
+        io::writePly(output.path("aligned.ply"), pipeline::alignedCloud(result, pair.moving));
+      } else {
+        io::writePly(output.path("aligned.ply"), pair.moving, result.transform->fixed_from_moving);
+      }
     });
   }
   if (arguments.no_pictures) return {};
@@ -136,8 +143,10 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   const LoadedPair pair = monitor.run(Stage::kRead, [&] { return load(arguments); });
   printWarnings(pair.fixed.warnings);
   printWarnings(pair.moving.warnings);
+  const std::vector<Eigen::Vector3d> path =
+      arguments.path.empty() ? std::vector<Eigen::Vector3d>{} : io::readPath(arguments.path);
   const pipeline::Registration result =
-      pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor);
+      pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor, {}, path);
   printWarnings(monitor.warnings());
   info.pictures = writeResults(arguments, options, pair, result, output, monitor);
   report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result,
@@ -170,6 +179,10 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   command->add_option("--prior", arguments->prior,
                       "Initial guess: 4x4 text, row-major, moving -> fixed file coordinates. "
                       "Default: offset.xyz beside each cloud, else coordinates as they stand");
+  command->add_option("--path", arguments->path,
+                      "Where the robot drove, in MOVING's coordinates: a line for each place, "
+                      "'x y', 'x y z', 't x y z' or TUM's 't x y z qx qy qz qw', or columns named "
+                      "x and y. Default: as the strip's shape tells");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");
   command->add_flag("--keep-rejected", arguments->keep_rejected,

@@ -11,6 +11,7 @@
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
+#include "agricolmap/io/text/path_file.hpp"
 #include "agricolmap/simulate/picture/pair_picture.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 #include "common.hpp"
@@ -64,6 +65,7 @@ void writeClouds(const io::StagedOutput& output, const simulate::SimulatedPair& 
   // The UAV's file is the world; the UGV's geotag is what the initial guess knows.
   io::writeOffset(output.path("uav/offset.xyz"), Eigen::Affine3d::Identity());
   io::writeOffset(output.path("ugv/offset.xyz"), pair.prior);
+  io::writePath(output.path("ugv/path.txt"), pair.path, "x y z of the robot, UGV file");
   io::writeMatrix(output.path("prior.txt"), pair.prior, "initial guess, UGV file -> UAV file");
   io::writeMatrix(output.path("truth.txt"), pair.best_affine,
                   "best affine, UGV file -> UAV file; not exact where the strip drifts");

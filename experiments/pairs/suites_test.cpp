@@ -41,7 +41,7 @@ TEST(Suites, HaveDistinctNamesAndSoundOptions) {
     }
   }
   EXPECT_EQ(casesOf("paper").size(), 15U);
-  EXPECT_EQ(suiteNames().size(), 13U);
+  EXPECT_EQ(suiteNames().size(), 15U);
 }
 
 TEST(Suites, UnknownNamesListTheKnownOnes) {
@@ -124,6 +124,40 @@ TEST(Settings, OfElsewhereAreDisjoint) {
   for (const std::string& one : valuesOf(Settings::kFinal)) {
     EXPECT_FALSE(develop.contains(one)) << one;
     EXPECT_FALSE(calibrate.contains(one)) << one;
+  }
+}
+
+TEST(Settings, OfLongStripsAndTerrainAreDisjoint) {
+  for (const char* suite : {"long", "terrain"}) {
+    std::set<std::string> values[3];
+    const Settings settings[] = {Settings::kFinal, Settings::kCalibrate, Settings::kDevelop};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (const Case& one : casesOf(suite, settings[i])) {
+        values[i].insert(fmt::format("{} rows {}", one.dataset, one.options.field.row_spacing));
+        if (one.options.ugv.length > 15.0)
+          values[i].insert(fmt::format("{}", one.options.ugv.drift));
+        for (const OptionRange& range : one.ranges) {
+          for (const double value : range.values) {
+            values[i].insert(fmt::format("{} {}", range.path, value));
+          }
+        }
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (const std::string& one : values[i]) {
+        EXPECT_FALSE(values[(i + 1) % 3].contains(one)) << suite << " " << one;
+      }
+    }
+  }
+}
+
+TEST(Cases, LongStripsFitIntoTheirFieldsAtAnyHeading) {
+  for (const Case& one : casesOf("long")) {
+    const double length = one.options.ugv.length;
+    const double width =
+        one.options.ugv.width + (one.options.ugv.back ? one.options.ugv.back_aside : 0.0);
+    const double widest = std::max(length, (length + width) / std::sqrt(2.0));
+    EXPECT_LT(widest + 0.6 + width, one.options.field.width) << one.name;
   }
 }
 

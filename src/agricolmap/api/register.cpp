@@ -72,7 +72,7 @@ Registration::Uncertainty uncertaintyOf(const Cloud& fixed, const pipeline::Regi
   uncertainty.local_rms_m = inside.local_rms;
   uncertainty.height_deviation_m = inside.height_deviation;
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(uncertainty.covariance.data()) =
-      inside.covarianceWithHeight();
+      inside.covarianceWithHeight(found.maps.frames.turn);
   const Eigen::Vector3d levelled(inside.centre.x(), inside.centre.y(),
                                  found.placed->heights.offset);
   uncertainty.centre_m = fixed.origin + found.maps.frames.levelled_from_fixed.inverse() * levelled;

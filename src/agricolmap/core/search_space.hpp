@@ -37,6 +37,9 @@ struct SearchSpace {
   Eigen::Matrix2d scale_axes = Eigen::Matrix2d::Identity();
   /// Point of the moving map that `translation` is about [m].
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  /// By how much the levelled frames are turned against the fixed file's axes, counter-clockwise
+  /// [rad].
+  double turn = 0.0;
   /// What is done to the moving map before it is turned and scaled: a reflection makes a decoy of
   /// it, which lies nowhere in the fixed map.
   Eigen::Matrix2d mirror = Eigen::Matrix2d::Identity();

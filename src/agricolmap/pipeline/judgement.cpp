@@ -1,11 +1,14 @@
 #include "agricolmap/pipeline/judgement.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
 #include "agricolmap/refine/channel_poses.hpp"
 #include "agricolmap/refine/fit.hpp"
 #include "agricolmap/verdict/remedies.hpp"
+#include "agricolmap/verdict/sides.hpp"
 #include "agricolmap/verdict/straighten.hpp"
 
 namespace agricolmap::pipeline {
@@ -15,40 +18,6 @@ namespace {
 constexpr int kBlockFactor = 2;
 /// One block may come to agree by chance.
 constexpr std::size_t kOddBlock = 1;
-
-Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
-               const refine::RefinedPose& found, const Refined& refined,
-               const RegistrationOptions& options, Monitor& monitor) {
-  const Eigen::Affine2d& pose = found.pose;
-  Placed placed;
-  placed.pose = pose;
-  placed.placement = refined.best->start;
-  placed.refined_cell = found.factor * signals.moving().grid().frame.cell;
-  placed.heights = monitor.run(Stage::kHeights, [&] {
-    return refine::fitVertical(signals.fixed().grid(), signals.moving().grid(), pose,
-                               options.vertical);
-  });
-  monitor.run(Stage::kJudge, [&] {
-    // At the ranking level: finer maps may be sparser than their cells.
-    const refine::SignalPair whole = signals.whole(refine::kRankingFactor);
-    const refine::Fit fit = refine::fitOf(whole.fixed, whole.moving, pose);
-    placed.correlation = fit.correlation;
-    placed.overlap = fit.overlap;
-    const double rival = refined.rivals.empty() ? 0.0 : refined.rivals.front().significance;
-    placed.evidence =
-        verdict::measureEvidence(signals.score(), pose, space, rival, options.evidence);
-    placed.evidence.decoys = refined.decoys;
-    const map::SignalMap fixed = signals.fixedSignals(pose, kBlockFactor);
-    const map::SignalMap& moving = signals.filled(kBlockFactor);
-    const double systematic = std::hypot(
-        refine::disagreementOfChannels(fixed, moving, pose, denseInForce(options)).value_or(0.0),
-        options.uncertainty.lean * map::canopyHeight(signals.moving().grid()));
-    placed.uncertainty =
-        verdict::estimateUncertainty(fixed, moving, pose, placed.evidence, space, systematic,
-                                     placed.heights.deviation(), options.uncertainty);
-  });
-  return placed;
-}
 
 /// Blocks place themselves by centimetres at best: what they lay straight must also fit better.
 bool fitsBetter(const Placed& next, const Placed& before) {
@@ -85,6 +54,40 @@ Measured measureBent(const refine::PairSignals& signals, const SearchSpace& spac
 
 }  // namespace
 
+Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
+               const refine::RefinedPose& found, const Refined& refined,
+               const RegistrationOptions& options, Monitor& monitor) {
+  const Eigen::Affine2d& pose = found.pose;
+  Placed placed;
+  placed.pose = pose;
+  placed.placement = refined.best->start;
+  placed.refined_cell = found.factor * signals.moving().grid().frame.cell;
+  placed.heights = monitor.run(Stage::kHeights, [&] {
+    return refine::fitVertical(signals.fixed().grid(), signals.moving().grid(), pose,
+                               options.vertical);
+  });
+  monitor.run(Stage::kJudge, [&] {
+    // At the ranking level: finer maps may be sparser than their cells.
+    const refine::SignalPair whole = signals.whole(refine::kRankingFactor);
+    const refine::Fit fit = refine::fitOf(whole.fixed, whole.moving, pose);
+    placed.correlation = fit.correlation;
+    placed.overlap = fit.overlap;
+    const double rival = refined.rivals.empty() ? 0.0 : refined.rivals.front().significance;
+    placed.evidence =
+        verdict::measureEvidence(signals.score(), pose, space, rival, options.evidence);
+    placed.evidence.decoys = refined.decoys;
+    const map::SignalMap fixed = signals.fixedSignals(pose, kBlockFactor);
+    const map::SignalMap& moving = signals.filled(kBlockFactor);
+    const double systematic = std::hypot(
+        refine::disagreementOfChannels(fixed, moving, pose, denseInForce(options)).value_or(0.0),
+        options.uncertainty.lean * map::canopyHeight(signals.moving().grid()));
+    placed.uncertainty =
+        verdict::estimateUncertainty(fixed, moving, pose, placed.evidence, space, systematic,
+                                     placed.heights.deviation(), options.uncertainty);
+  });
+  return placed;
+}
+
 Measured measureStraightened(const refine::PairSignals& signals, const SearchSpace& space,
                              const Refined& refined, const RegistrationOptions& options,
                              Monitor& monitor) {
@@ -112,6 +115,12 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
   verdict.remedies = verdict::remediesFor(verdict, finding, space, options.verdict);
+  if (placed.followed) verdict.reasons.push_back(describe(placed.followed->bend));
+  if (const auto apart = verdict::sidesApart(placed.evidence)) {
+    verdict.reasons.push_back(fmt::format(
+        "the strip's two sides lie {:.0f} cm apart: if the robot passed twice, give its path",
+        100.0 * *apart));
+  }
   if (options.association != AssociationKind::kCorrelation ||
       options.refine != RefineKind::kDense) {
     verdict.reasons.emplace_back(

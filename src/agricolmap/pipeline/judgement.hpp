@@ -5,11 +5,19 @@
 #include <vector>
 
 #include "agricolmap/core/monitor.hpp"
+#include "agricolmap/deform/deform.hpp"
 #include "agricolmap/pipeline/refinement.hpp"
 #include "agricolmap/refine/vertical.hpp"
 #include "agricolmap/verdict/verdict.hpp"
 
 namespace agricolmap::pipeline {
+
+/// A bend or slip of the strip that is followed.
+struct Followed {
+  deform::Bend bend;
+  /// The moving map without it, levelled moving frame: what all else of a Placed was measured on.
+  map::GridMap straight;
+};
 
 /// A pose of the moving map with all that was measured there.
 struct Placed {
@@ -21,7 +29,13 @@ struct Placed {
   double overlap = 0.0;       ///< share of the moving map's cells that the fixed map sees
   double correlation = 0.0;   ///< of the dense signals
   double refined_cell = 0.0;  ///< of the finest map that the refinement could follow [m]; 0: none
+  std::optional<Followed> followed;  ///< on top of the pose; nothing: the pose is all
 };
+
+/// Heights and evidence at a pose.
+Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
+               const refine::RefinedPose& found, const Refined& refined,
+               const RegistrationOptions& options, Monitor& monitor);
 
 /// Heights and evidence at the refined pose and, where neighbouring blocks of the strip are
 /// displaced alike, at the pose that lays them straight, if that fits better in every respect. Of a

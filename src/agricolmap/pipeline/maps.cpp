@@ -44,9 +44,13 @@ PairMaps mapPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d&
                  const RegistrationOptions& options, Monitor& monitor) {
   PairMaps maps;
   monitor.run(Stage::kLevel, [&] {
+    const Eigen::Affine3d centred = centredGuess(fixed, moving, guess, options.prior);
+    if (placesByPieces(options)) {
+      maps.frames.turn = turnAlong(fixed, moving, centred, options.prior, options.pieces.from);
+    }
     levelFixed(fixed, options.level, maps.frames);
     maps.fixed_box = maps.frames.fixed_footprint.box;
-    levelAndBound(fixed, moving, centredGuess(fixed, moving, guess, options.prior), options, maps);
+    levelAndBound(fixed, moving, centred, options, maps);
   });
   if (!options.prior.scale_unknown) {
     requirePlausibleExtents(fixed, moving, maps.fixed_box, maps.moving_box);
@@ -63,6 +67,16 @@ void mapMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& g
                const RegistrationOptions& options, Monitor& monitor, PairMaps& maps) {
   monitor.run(Stage::kLevel, [&] { levelAndBound(fixed, moving, guess, options, maps); });
   monitor.run(Stage::kGrid, [&] { gridMoving(moving, maps); });
+}
+
+void bendMoving(const Cloud& moving, const pieces::Bend& bend, Monitor& monitor, PairMaps& maps) {
+  monitor.run(Stage::kGrid, [&] {
+    const Cloud bent = pieces::bentCloud(moving, maps.frames.levelled_from_moving, bend);
+    maps.frames.moving_footprint = map::footprintOf(bent, maps.frames.levelled_from_moving);
+    maps.moving_box = maps.frames.moving_footprint.box;
+    gridMoving(bent, maps);
+    maps.bend = bend;
+  });
 }
 
 }  // namespace agricolmap::pipeline

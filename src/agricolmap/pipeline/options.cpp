@@ -34,6 +34,7 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
   table.group("signal", options.signal, "what of the maps is compared");
   table.group("filter", options.filter, "the matched filter of the search and of the evidence");
   table.group("search", options.search, "the correlation search (association = correlation)");
+  table.group("pieces", options.pieces, "long strips, piece by piece (the default chain)");
   table.group("flow", options.flow, "the paper's flow and vote (association = flow)");
   table.group("affine", options.affine, "the affine from the flow's matches (association = flow)");
   table.group("hidden", options.hidden, "ground that plants hide from the robot");
@@ -41,6 +42,7 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
   table.group("vegetation", options.vegetation, "telling plants from soil (refine = cpd)");
   table.group("cpd", options.cpd, "coherent point drift (refine = cpd)");
   table.group("vertical", options.vertical, "tilt and height");
+  table.group("deform", options.deform, "following a strip that bends or slipped (refine = dense)");
   table.group("evidence", options.evidence, "what the verdict rests on");
   table.group("uncertainty", options.uncertainty, "the stated error");
   table.group("verdict", options.verdict, "when a registration is accepted");
@@ -56,6 +58,12 @@ bool flows(const RegistrationOptions& options) {
 }
 bool refinesDensely(const RegistrationOptions& options) {
   return options.refine == RefineKind::kDense;
+}
+bool isDefaultChain(const RegistrationOptions& options) {
+  return correlates(options) && refinesDensely(options);
+}
+bool followsBends(const RegistrationOptions& options) {
+  return options.deform.kind == deform::DeformKind::kPath;
 }
 bool refinesByPoints(const RegistrationOptions& options) {
   return options.refine == RefineKind::kCpd;
@@ -79,10 +87,15 @@ struct Need {
 };
 constexpr std::array kNeeds = {
     Need{"search.", correlates, "association = correlation"},
+    Need{"pieces.", isDefaultChain, "association = correlation and refine = dense"},
     Need{"flow.", flows, "association = flow"},
     Need{"affine.", flows, "association = flow"},
     Need{"dense.", refinesDensely, "refine = dense"},
     Need{"straighten", refinesDensely, "refine = dense"},
+    Need{"deform.", refinesDensely, "refine = dense"},
+    Need{"deform.node", followsBends, "deform.kind = path"},
+    Need{"deform.min_gain", followsBends, "deform.kind = path"},
+    Need{"deform.min_rise", followsBends, "deform.kind = path"},
     Need{"vegetation.", refinesByPoints, "refine = cpd"},
     Need{"cpd.", refinesByPoints, "refine = cpd"},
     Need{"flow.vote.coarse", votesForPoses, "flow.vote.kind = pose"},
@@ -147,6 +160,10 @@ RegistrationOptions resolved(const RegistrationOptions& chosen) {
 
 refine::DenseRefineOptions denseInForce(const RegistrationOptions& options) {
   return refinesDensely(options) ? options.dense : refine::DenseRefineOptions{};
+}
+
+bool placesByPieces(const RegistrationOptions& options) {
+  return isDefaultChain(options) && !options.prior.scale_unknown;
 }
 
 std::string missingFor(const RegistrationOptions& options, std::string_view path) {

@@ -7,6 +7,7 @@
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/search_space.hpp"
+#include "agricolmap/deform/deform.hpp"
 #include "agricolmap/locate/correlation_search.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/map/hidden_ground.hpp"
@@ -16,6 +17,7 @@
 #include "agricolmap/paper/cpd/cpd.hpp"
 #include "agricolmap/paper/estimate_affine.hpp"
 #include "agricolmap/paper/flow_association.hpp"
+#include "agricolmap/pieces/chain.hpp"
 #include "agricolmap/refine/dense_refine.hpp"
 #include "agricolmap/refine/vertical.hpp"
 #include "agricolmap/verdict/uncertainty.hpp"
@@ -38,6 +40,7 @@ struct RegistrationOptions {
   map::SignalOptions signal;
   correlation::MatchedFilterOptions filter;
   locate::CorrelationOptions search;
+  pieces::PiecesOptions pieces;
   paper::FlowAssociationOptions flow;
   paper::AffineOptions affine;
   map::HiddenGroundOptions hidden;
@@ -45,6 +48,7 @@ struct RegistrationOptions {
   map::VegetationOptions vegetation;
   paper::CpdOptions cpd;
   refine::VerticalOptions vertical;
+  deform::DeformOptions deform;
   verdict::EvidenceOptions evidence;
   verdict::UncertaintyOptions uncertainty;
   verdict::VerdictOptions verdict;
@@ -53,6 +57,9 @@ void listOptions(OptionTable& table, RegistrationOptions& options);
 
 /// Of a chain that does not refine densely, where the verdict does it all the same: the defaults.
 refine::DenseRefineOptions denseInForce(const RegistrationOptions& options);
+
+/// Whether long strips are placed piece by piece: by the default chain, at a known scale.
+bool placesByPieces(const RegistrationOptions& options);
 
 /// The options as they are in force: what one of them decides for others is written there, so that
 /// what is reported is what was done. Whoever registers calls this first; calling it again changes

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
@@ -14,6 +17,11 @@ namespace {
 
 // Beyond this ratio of areas "moving" and "fixed" were swapped, or one is in other units.
 constexpr double kMaxAreaRatio = 4.0;
+/// A long strip's direction is told by so many points; it is one from so many widths on, and as far
+/// as the guess knows its heading [°].
+constexpr std::size_t kSamples = 20'000;
+constexpr double kLeastLength = 4.0;
+constexpr double kMostHeading = 45.0;
 
 struct PointSum {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -22,6 +30,14 @@ struct PointSum {
     return *this;
   }
 };
+
+/// In double and about the origins, so that UTM coordinates cancel before anything is float.
+Eigen::Affine3d localGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess) {
+  return Eigen::Affine3d(Eigen::Translation3d(-fixed.origin) * guess *
+                         Eigen::Translation3d(moving.origin));
+}
+
+Eigen::AngleAxisd turned(double turn) { return {turn, Eigen::Vector3d::UnitZ()}; }
 
 }  // namespace
 
@@ -42,19 +58,43 @@ Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eige
   return Eigen::Translation3d(meanOf(fixed) - guess * meanOf(moving)) * guess;
 }
 
+double turnAlong(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                 const PriorUncertainty& uncertainty, double from) {
+  if (moving.xyz.empty() || uncertainty.anywhere() || uncertainty.heading_deg > kMostHeading) {
+    return 0.0;
+  }
+  const Eigen::Affine3d local = localGuess(fixed, moving, guess);
+  const std::size_t stride = std::max<std::size_t>(1, moving.size() / kSamples);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < moving.size(); i += stride) {
+    points.emplace_back((local * moving.xyz[i].cast<double>()).head<2>());
+    sum += points.back();
+  }
+  const Eigen::Vector2d mean = sum / static_cast<double>(points.size());
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& p : points) scatter += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(scatter /
+                                                             static_cast<double>(points.size()));
+  // Of an even line the deviation is its length over the root of twelve.
+  const Eigen::Vector2d sizes = (12.0 * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
+  if (!(sizes[1] > from && sizes[1] > kLeastLength * sizes[0])) return 0.0;
+  const Eigen::Vector2d along = eigen.eigenvectors().col(1);
+  return -std::atan(along.y() / along.x());
+}
+
 void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames) {
   frames.fixed = map::levelCloud(fixed, Eigen::Affine3d::Identity(), options);
-  frames.levelled_from_fixed = frames.fixed.levelled_from_guess;
+  frames.levelled_from_fixed = turned(frames.turn) * frames.fixed.levelled_from_guess;
   frames.fixed_footprint = map::footprintOf(fixed, frames.levelled_from_fixed);
 }
 
 void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const map::LevelOptions& options, PairFrames& frames) {
-  // In double and about the origins, so that UTM coordinates cancel before anything is float.
-  const Eigen::Affine3d guess_local =
-      Eigen::Translation3d(-fixed.origin) * guess * Eigen::Translation3d(moving.origin);
+  const Eigen::Affine3d guess_local = localGuess(fixed, moving, guess);
   frames.moving = map::levelCloud(moving, guess_local, options);
-  frames.levelled_from_moving = frames.moving.levelled_from_guess * guess_local;
+  frames.levelled_from_moving =
+      turned(frames.turn) * frames.moving.levelled_from_guess * guess_local;
   frames.moving_footprint = map::footprintOf(moving, frames.levelled_from_moving);
 }
 
@@ -72,6 +112,7 @@ SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
                         const PriorUncertainty& uncertainty) {
   SearchSpace space;
   space.uncertainty = uncertainty;
+  space.turn = frames.turn;
   space.centre = moving.center();
   const Eigen::Matrix2d axes = frames.levelled_from_moving.linear().topLeftCorner<2, 2>();
   space.scale_axes = axes.colwise().normalized();

@@ -13,6 +13,9 @@ namespace agricolmap::pipeline {
 
 /// Frames of a pair. Local frames are the clouds' own axes about their double origins.
 struct PairFrames {
+  /// By how much both levelled frames are turned against the fixed file's axes, counter-clockwise
+  /// [rad]: maps of a long strip lie along it, so that they cost what it is long.
+  double turn = 0.0;
   Eigen::Affine3d levelled_from_fixed;   ///< fixed local → fixed levelled [m]
   Eigen::Affine3d levelled_from_moving;  ///< moving local → initial guess → moving levelled [m]
   map::Levelling fixed;
@@ -28,6 +31,11 @@ Eigen::Vector3d meanOf(const Cloud& cloud);
 /// that all that follows counts from there, however far apart the files' coordinates are.
 Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                              const PriorUncertainty& uncertainty);
+
+/// The turn that lays a strip of more than `from` [m] along the x axis under the guess; none where
+/// it is shorter, hardly longer than wide, or the guess leaves its heading open.
+double turnAlong(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                 const PriorUncertainty& uncertainty, double from);
 
 /// Levels the fixed cloud and finds where its points are.
 void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames);

@@ -19,7 +19,8 @@ struct Trace {
   Located located;           ///< by the search that the answer is from
   std::size_t held = 0;      ///< placements that held when refined
   std::optional<CpdReport> cpd;
-  std::optional<bool> straightened;  ///< see Measured
+  std::optional<bool> straightened;       ///< see Measured
+  std::vector<pieces::PiecePose> pieces;  ///< of a long strip, in order along its path
 };
 
 /// Where a moving map was placed, in the levelled frames.
@@ -36,6 +37,9 @@ struct Transform {
   Eigen::Affine3d fixed_from_moving = Eigen::Affine3d::Identity();
   /// The same between the local frames (about the clouds' origins).
   Eigen::Affine3d local_fixed_from_moving = Eigen::Affine3d::Identity();
+  /// Of a strip that was laid straight first (PairMaps::bend): the same for the cloud as it was
+  /// then. The others are what comes nearest to both together. Else equal to `fixed_from_moving`.
+  Eigen::Affine3d fixed_from_bent = Eigen::Affine3d::Identity();
 
   // Parts, relative to the initial guess, at the middle of the moving map.
   HorizontalParts parts;  ///< yaw [rad], scales along the moving file's axes
@@ -62,15 +66,21 @@ struct Registration {
   std::vector<Alternative> alternatives;
   Trace trace;
   PairMaps maps;  ///< for pictures and reports
+
+  /// Whether the moving cloud is laid by more than the transform: pieces of a long strip, or a bend
+  /// that is followed.
+  bool bent() const { return maps.bend.has_value() || (placed && placed->followed); }
 };
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.
 /// Throws InputError for clouds that cannot be used, UsageError for options outside their limits,
 /// Interrupted when the monitor's token asks to stop. A registration that fails is a rejected
 /// result, not an exception. `locator` stands in for the search that the options name; empty:
-/// theirs.
+/// theirs. `path`: places of the robot in the order of driving, moving file coordinates; empty: as
+/// the strip's shape tells.
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                             const RegistrationOptions& options, Monitor& monitor,
-                            const Locator& locator = {});
+                            const Locator& locator = {},
+                            const std::vector<Eigen::Vector3d>& path = {});
 
 }  // namespace agricolmap::pipeline

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/pose_distance.hpp"
+#include "agricolmap/refine/residual.hpp"
 
 namespace agricolmap::refine {
 
@@ -28,11 +28,7 @@ void listOptions(OptionTable& table, DenseRefineOptions& options) {
 
 namespace {
 
-constexpr float kMinWeight = 0.25F;  // share of a cell that must have been seen
 constexpr double kMinCells = 30.0;
-/// Plants are green and high in both maps, however little they have in common; soil may be wet or
-/// dry, brighter or darker than leaves.
-constexpr double kLeastGain[map::kSignalChannels] = {0.2, 0.2, 0.0};
 constexpr std::size_t kChunk = 2048;
 
 /// A seen cell of the moving map.
@@ -53,7 +49,7 @@ Samples collect(const map::SignalMap& moving) {
   Eigen::AlignedBox2d box;
   for (int r = 0; r < moving.frame.rows; ++r) {
     for (int c = 0; c < moving.frame.cols; ++c) {
-      if (moving.weight(r, c) >= kMinWeight) box.extend(moving.frame.centre(r, c));
+      if (moving.weight(r, c) >= kMinSeen) box.extend(moving.frame.centre(r, c));
     }
   }
   if (box.isEmpty()) return samples;
@@ -62,7 +58,7 @@ Samples collect(const map::SignalMap& moving) {
   for (int r = 0; r < moving.frame.rows; ++r) {
     for (int c = 0; c < moving.frame.cols; ++c) {
       const std::size_t i = moving.weight.index(r, c);
-      if (moving.weight[i] < kMinWeight) continue;
+      if (moving.weight[i] < kMinSeen) continue;
       const Eigen::Vector2f p = (moving.frame.centre(r, c) - samples.middle).cast<float>();
       Sample sample{p.x(), p.y(), moving.weight[i], {}};
       for (int k = 0; k < map::kSignalChannels; ++k) sample.value[k] = moving.channel[k][i];
@@ -89,14 +85,6 @@ Eigen::Affine2d affineOf(const Parameters& p, const Eigen::Vector2d& middle) {
   return affine;
 }
 
-/// Fixed values and their slopes under one sample.
-struct Look {
-  bool seen = false;
-  float value[map::kSignalChannels];
-  float dx[map::kSignalChannels];
-  float dy[map::kSignalChannels];
-};
-
 /// Reads the fixed map at moved samples.
 class FixedReader {
  public:
@@ -109,26 +97,9 @@ class FixedReader {
   }
 
   Look at(const Sample& s) const {
-    Look look;
     const float col = a_[0] * s.x + a_[1] * s.y + a_[2];
     const float row = a_[3] * s.x + a_[4] * s.y + a_[5];
-    const auto cells = cellsWithin<float>(map_.frame.rows, map_.frame.cols, col, row);
-    if (!cells) return look;
-    const float u = cells->u, v = cells->v;
-    const std::size_t i = map_.weight.index(cells->row, cells->col);
-    const std::size_t j = i + static_cast<std::size_t>(map_.frame.cols);
-    const Raster<float>& w = map_.weight;
-    if (std::min({w[i], w[i + 1], w[j], w[j + 1]}) < kMinWeight) return look;
-    look.seen = true;
-    for (int k = 0; k < map::kSignalChannels; ++k) {
-      const Raster<float>& f = map_.channel[k];
-      const float bottom = f[i + 1] - f[i], top = f[j + 1] - f[j];
-      const float left = f[j] - f[i], right = f[j + 1] - f[i + 1];
-      look.value[k] = f[i] + u * bottom + v * left + u * v * (top - bottom);
-      look.dx[k] = (bottom + v * (top - bottom)) * inv_cell_;
-      look.dy[k] = (left + u * (right - left)) * inv_cell_;
-    }
-    return look;
+    return lookAt(map_, inv_cell_, col, row);
   }
 
  private:
@@ -137,38 +108,20 @@ class FixedReader {
   float a_[6];
 };
 
-/// Per channel: gain of the fixed values and robust deviation of the residual.
-struct Noise {
-  double gain[map::kSignalChannels];
-  double deviation[map::kSignalChannels];
-  Noise() {
-    std::fill(std::begin(gain), std::end(gain), 1.0);
-    std::fill(std::begin(deviation), std::end(deviation), 1.0);
-  }
-};
-
 /// Sums of one pass over the samples. A sample's row of the Jacobian is (gx·q, gy·q) with
 /// q = (x, y, 1): the normal matrix has three different blocks, each a sum of g·g·q·qᵀ.
 struct Sums {
   double block[3][6] = {};  ///< gx², gx·gy, gy² times x², xy, x, y², y, 1
   Parameters right = Parameters::Zero();
   double cells = 0.0;
-  double fm[map::kSignalChannels] = {}, mm[map::kSignalChannels] = {},
-         ff[map::kSignalChannels] = {};
-  double rr[map::kSignalChannels] = {}, weight[map::kSignalChannels] = {};
+  Products products;
   Sums& operator+=(const Sums& other) {
     for (int b = 0; b < 3; ++b) {
       for (int i = 0; i < 6; ++i) block[b][i] += other.block[b][i];
     }
     right += other.right;
     cells += other.cells;
-    for (int k = 0; k < map::kSignalChannels; ++k) {
-      fm[k] += other.fm[k];
-      mm[k] += other.mm[k];
-      ff[k] += other.ff[k];
-      rr[k] += other.rr[k];
-      weight[k] += other.weight[k];
-    }
+    products += other.products;
     return *this;
   }
   Eigen::Matrix<double, 6, 6> normal() const {
@@ -195,11 +148,7 @@ void addSample(const Sample& s, const Look& look, const Noise& noise, double rob
     const double residual = m - noise.gain[k] * f;
     const double u = residual / (robust * noise.deviation[k]);
     const double w = static_cast<double>(s.weight) / (1.0 + u * u);
-    sums.fm[k] += w * f * m;
-    sums.mm[k] += w * m * m;
-    sums.ff[k] += w * f * f;
-    sums.rr[k] += w * residual * residual;
-    sums.weight[k] += w;
+    sums.products.add(k, w, f, m, residual);
     const double scale = w / (noise.deviation[k] * noise.deviation[k]);
     const double gx = noise.gain[k] * static_cast<double>(look.dx[k]);
     const double gy = noise.gain[k] * static_cast<double>(look.dy[k]);
@@ -235,14 +184,6 @@ Sums pass(const Samples& samples, const FixedReader& reader, const Noise& noise,
                            });
 }
 
-void updateNoise(const Sums& sums, Noise& noise) {
-  for (int k = 0; k < map::kSignalChannels; ++k) {
-    if (sums.weight[k] <= 0.0 || sums.ff[k] <= 0.0) continue;
-    noise.gain[k] = std::max(kLeastGain[k], sums.fm[k] / sums.ff[k]);
-    noise.deviation[k] = std::max(0.05, std::sqrt(sums.rr[k] / sums.weight[k]));
-  }
-}
-
 /// Largest movement of a corner of the moving map between two parameter sets [m].
 double cornerMove(const Parameters& a, const Parameters& b, const Eigen::Vector2d& half) {
   const Eigen::Vector2d middle = Eigen::Vector2d::Zero();
@@ -253,8 +194,8 @@ double correlationOf(const Sums& sums, const bool used[]) {
   double fm = 0.0, norm = 0.0;
   for (int k = 0; k < map::kSignalChannels; ++k) {
     if (!used[k]) continue;
-    fm += sums.fm[k];
-    norm += std::sqrt(sums.mm[k] * sums.ff[k]);
+    fm += sums.products.fm[k];
+    norm += std::sqrt(sums.products.mm[k] * sums.products.ff[k]);
   }
   return norm > 0.0 ? fm / norm : 0.0;
 }
@@ -283,7 +224,7 @@ DenseRefineResult refineDense(const map::SignalMap& fixed, const map::SignalMap&
       result.status = RefineStatus::kNoOverlap;
       return result;
     }
-    updateNoise(sums, noise);
+    sums.products.update(noise);
     const Eigen::Matrix<double, 6, 6> normal = sums.normal();
     const Parameters pull = options.prior_weight * normal.diagonal();
     Eigen::Matrix<double, 6, 6> damped = normal;

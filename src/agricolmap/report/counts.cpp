@@ -1,5 +1,7 @@
 #include "agricolmap/report/counts.hpp"
 
+#include <algorithm>
+
 namespace agricolmap::report {
 namespace {
 
@@ -52,6 +54,12 @@ Counts countsOf(const pipeline::Registration& registration) {
     addCpd(counts, *trace.cpd);
   } else {
     add(counts, "refined_placements", trace.held);
+  }
+  if (!trace.pieces.empty()) {
+    add(counts, "pieces", trace.pieces.size());
+    add(counts, "found_pieces",
+        static_cast<std::size_t>(std::count_if(trace.pieces.begin(), trace.pieces.end(),
+                                               [](const auto& piece) { return piece.held; })));
   }
   if (trace.straightened) counts.emplace_back("straightened", *trace.straightened ? 1.0 : 0.0);
   return counts;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/core/angles.hpp"
@@ -25,13 +27,50 @@ constexpr double kHidingMargin = 0.5;  // canvas around the strip [m]
 Eigen::Vector2d halfBox(const UgvOptions& options, double heading) {
   const double c = std::abs(std::cos(heading));
   const double s = std::abs(std::sin(heading));
-  return {0.5 * (options.length * c + options.width * s) + kStripMargin,
-          0.5 * (options.length * s + options.width * c) + kStripMargin};
+  const double width = options.width + (options.back ? std::abs(options.back_aside) : 0.0);
+  return {0.5 * (options.length * c + width * s) + kStripMargin,
+          0.5 * (options.length * s + width * c) + kStripMargin};
 }
 
 bool insideField(const Eigen::Vector2d& point, const Eigen::Vector2d& size) {
   return point.x() >= 0.0 && point.y() >= 0.0 && point.x() <= size.x() && point.y() <= size.y();
 }
+
+/// What the robot drove: a straight line, or there and back again, and what its odometry made of
+/// it.
+class Way {
+ public:
+  Way(const UgvOptions& options, std::uint64_t seed)
+      : options_(options),
+        drift_(options.back ? 2.0 * options.length : options.length, options.drift, seed) {}
+
+  /// Of a point `local`, in metres along the strip and to the left of its middle, in these axes.
+  Eigen::Vector3d drift(const Eigen::Vector3d& local, bool back) const {
+    if (!back) return drift_.at(local.x(), local.y());
+    // The robot's own ahead and left are the strip's behind and right.
+    const Eigen::Vector3d own =
+        drift_.at(2.0 * options_.length - local.x(), options_.back_aside - local.y());
+    return {-own.x(), -own.y(), own.z()};
+  }
+  /// Places that it passed, in order, and whether on the way back.
+  std::vector<std::pair<Eigen::Vector3d, bool>> middle() const {
+    std::vector<std::pair<Eigen::Vector3d, bool>> places;
+    const int steps = std::max(1, static_cast<int>(std::ceil(options_.length / kPathStep)));
+    for (const bool back : {false, true}) {
+      if (back && !options_.back) break;
+      for (int i = 0; i <= steps; ++i) {
+        const double along = options_.length * (back ? steps - i : i) / steps;
+        places.push_back({{along, back ? options_.back_aside : 0.0, 0.0}, back});
+      }
+    }
+    return places;
+  }
+
+ private:
+  static constexpr double kPathStep = 0.5;  // [m]
+  UgvOptions options_;
+  Drift drift_;
+};
 
 void checkSeen(const FieldPoints& points) {
   if (!points.xyz.empty()) return;
@@ -65,6 +104,10 @@ StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_si
         options.length, options.width, degrees(strip.heading), field_size.x(), field_size.y()));
   }
   strip.centre = half + Eigen::Vector2d(random.uniform() * room.x(), random.uniform() * room.y());
+  if (options.back) {
+    strip.centre += 0.5 * options.back_aside *
+                    Eigen::Vector2d(std::sin(strip.heading), -std::cos(strip.heading));
+  }
   if (options.overhang > 0.0) {
     // Forwards until the share asked for lies beyond the border.
     const Eigen::Vector2d ahead(std::cos(strip.heading), std::sin(strip.heading));
@@ -73,6 +116,22 @@ StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_si
       strip.centre += 0.02 * ahead;
   }
   return strip;
+}
+
+StripPlace wayBack(const StripPlace& there, const UgvOptions& options) {
+  const Eigen::Vector2d left(-std::sin(there.heading), std::cos(there.heading));
+  return {there.centre + options.back_aside * left, there.heading + std::numbers::pi};
+}
+
+FieldPoints thereAndBack(FieldPoints there, const FieldPoints& back, const UgvOptions& options) {
+  const auto length = static_cast<float>(options.length);
+  const auto aside = static_cast<float>(options.back_aside);
+  there.there = there.xyz.size();
+  for (const Eigen::Vector3f& p : back.xyz) {
+    there.xyz.emplace_back(length - p.x(), aside - p.y(), p.z());
+  }
+  there.rgb.insert(there.rgb.end(), back.rgb.begin(), back.rgb.end());
+  return there;
 }
 
 Window stripWindow(const StripPlace& strip, const UgvOptions& options) {
@@ -85,7 +144,7 @@ Window stripWindow(const StripPlace& strip, const UgvOptions& options) {
 }
 
 double uavCell(const SimulationOptions& options) {
-  const double blocks = std::max(2.0, std::ceil(options.uav.gsd / 0.008));
+  const double blocks = std::max(2.0, std::ceil(options.uav.gsd / options.uav.canvas));
   return options.uav.gsd / blocks;
 }
 
@@ -166,7 +225,7 @@ SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vect
   pair.nominal = tag.nominal;
   pair.prior = tag.prior;
 
-  const Drift drift(options.ugv.length, options.ugv.drift, hashBits(seed, 1));
+  const Way way(options.ugv, hashBits(seed, 1));
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(strip.heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const Eigen::Vector3d begin = base + Eigen::Vector3d(strip.centre.x(), strip.centre.y(), 0.0) -
@@ -184,10 +243,14 @@ SimulatedStrip assembleStrip(const SimulationOptions& options, const Eigen::Vect
         const Eigen::Vector3d place = begin + turn * local;
         pair.truth[i] = place;
         pair.truth[i].head<2>() += pieces.displacement((place - base).head<2>());
-        const Eigen::Vector3d drifted = place + turn * drift.at(local.x(), local.y());
+        const Eigen::Vector3d drifted = place + turn * way.drift(local, i >= below.there);
         pair.ugv.xyz[i] = (file_from_uav * drifted - pair.ugv.origin).cast<float>();
       },
       1U << 14);
+  for (const auto& [local, back] : way.middle()) {
+    const Eigen::Vector3d at = begin + turn * (local + way.drift(local, back));
+    pair.path.emplace_back(file_from_uav * Eigen::Vector3d(at.x(), at.y(), mean_z + base.z()));
+  }
   pair.best_affine = fitAffine(pair.ugv, pair.truth);
   return pair;
 }

@@ -28,10 +28,16 @@ Eigen::Vector2d stripRoom(const UgvOptions& options, const Eigen::Vector2d& fiel
 StripPlace placeStrip(const UgvOptions& options, const Eigen::Vector2d& field_size,
                       double row_heading, std::uint64_t seed);
 
+/// The second pass of a robot that drives back, see UgvOptions::back.
+StripPlace wayBack(const StripPlace& there, const UgvOptions& options);
+/// The points of both passes in the coordinates of the first.
+FieldPoints thereAndBack(FieldPoints there, const FieldPoints& back, const UgvOptions& options);
+
 /// The strip with a border wide enough for what can hide it.
 Window stripWindow(const StripPlace& strip, const UgvOptions& options);
 
-/// Cell of the UAV's canvas [m]: at least two per ground sampling distance, at most 8 mm.
+/// Cell of the UAV's canvas [m]: at least two per ground sampling distance, at most
+/// `uav.canvas`.
 double uavCell(const SimulationOptions& options);
 
 Visit flightOf(const ViewOptions& views, std::uint64_t seed);

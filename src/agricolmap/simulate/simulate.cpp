@@ -100,8 +100,14 @@ SimulatedStrip SimulatedField::strip(const SimulationOptions& options, int index
     driven = FieldModel(options.crop, other, seed(6));
   }
   const Visit drive = driveOf(options.views, seed(3));
-  FieldPoints below = senseFromGround(renderVisit(driven, drive, stripWindow(shown, options.ugv)),
-                                      options.ugv, seed(7));
+  const auto seenFrom = [&](const StripPlace& from, std::uint64_t purpose) {
+    return senseFromGround(renderVisit(driven, drive, stripWindow(from, options.ugv)), options.ugv,
+                           seed(purpose));
+  };
+  FieldPoints below = seenFrom(shown, 7);
+  if (options.ugv.back) {
+    below = thereAndBack(std::move(below), seenFrom(wayBack(shown, options.ugv), 10), options.ugv);
+  }
   if (options.beyond_map) {
     // A slope must not give away that the strip comes from afar.
     const auto lift =

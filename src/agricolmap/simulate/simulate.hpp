@@ -23,6 +23,8 @@ struct SimulatedStrip {
   Eigen::Affine3d nominal;      ///< UGV file → UAV file: exact but for drift and pieces
   Eigen::Affine3d prior;        ///< UGV file → UAV file: the initial guess
   Eigen::Vector3d strip_centre = Eigen::Vector3d::Zero();  ///< UAV file coordinates [m]
+  /// Where the robot's odometry says that it drove, UGV file coordinates [m].
+  std::vector<Eigen::Vector3d> path;
   double strip_heading = 0.0;  ///< direction of travel in the UAV file [rad]
   double row_heading = 0.0;    ///< direction of the UAV field's rows [rad]
   /// False when the map does not show what the strip does (SimulationOptions::other_field,

@@ -55,10 +55,17 @@ void listOptions(OptionTable& t, FieldOptions& o) {
            "deviation of plant size over about 6 m");
   t.number("tone_spread", o.tone_spread, 0.0, 5.0, "",
            "factor on the deviation of the plants' colours");
-  t.number("relief", o.relief, 0.0, 1.0, "m", "deviation of the soil's height over metres");
+  t.number("relief", o.relief, 0.0, 1.0, "m", "deviation of the soil's height over relief_length");
+  t.number("relief_length", o.relief_length, 0.5, 200.0, "m",
+           "distance over which the soil rises and falls");
   t.number("slope", o.slope, 0.0, 0.3, "", "slope of the field, in a random direction");
   t.number("ridge", o.ridge, 0.0, 0.3, "m", "half height of the ridges along the rows");
   t.number("clods", o.clods, 0.0, 0.1, "m", "deviation of the soil's height over centimetres");
+  t.number("track_depth", o.track_depth, 0.0, 0.5, "m", "depth of wheel tracks");
+  t.number("terrace", o.terrace, 0.0, 2.0, "m",
+           "height of terraces, whose edges the rows cross; 0 for none");
+  t.number("terrace_length", o.terrace_length, 1.0, 200.0, "m",
+           "length of a terrace along the rows");
   t.group("soil", o.soil);
   t.group("plots", o.plots);
 }
@@ -122,6 +129,8 @@ void listOptions(OptionTable& t, UavOptions& o) {
            "fraction of the canopy's height lost besides smoothing");
   t.number("dome", o.dome, -1.0, 1.0, "m", "height error of a corner against the centre");
   t.number("holes", o.holes, 0.0, 0.5, "", "fraction of the area without points").basic();
+  t.number("canvas", o.canvas, 0.004, 0.1, "m",
+           "largest cell of what is sampled, two to a sampling distance at least");
   t.group("mosaic", o.mosaic);
   t.group("colour", o.colour);
 }
@@ -146,6 +155,9 @@ void listOptions(OptionTable& t, UgvOptions& o) {
            "share of steps in height with points on their side");
   t.number("outliers", o.outliers, 0.0, 0.2, "", "fraction of flying points");
   t.number("drift", o.drift, 0.0, 0.1, "", "largest drift of the path over its length").basic();
+  t.flag("back", o.back, "drive back beside the strip, too, in the same file");
+  t.number("back_aside", o.back_aside, -20.0, 20.0, "m",
+           "the way back from the way there, to the left");
   t.group("colour", o.colour);
 }
 

@@ -58,10 +58,14 @@ struct FieldOptions {
   double size_spread = 0.18;       ///< deviation of plant size from plant to plant, fraction
   double growth_gradient = 0.15;   ///< deviation of plant size over ~6 m, fraction
   double tone_spread = 1.0;        ///< factor on the deviation of the plants' colours
-  double relief = 0.02;            ///< deviation of the soil's height over metres [m]
+  double relief = 0.02;            ///< deviation of the soil's height over `relief_length` [m]
+  double relief_length = 5.0;      ///< distance over which the soil rises and falls [m]
   double slope = 0.01;             ///< slope of the field in a random direction
   double ridge = 0.006;            ///< half height of the ridges along the rows [m]
   double clods = 0.006;            ///< deviation of the soil's height over centimetres [m]
+  double track_depth = 0.03;       ///< of wheel tracks; ruts where it is much [m]
+  double terrace = 0.0;            ///< height of terraces, whose edges the rows cross [m]
+  double terrace_length = 10.0;    ///< of a terrace along the rows [m]
   SoilOptions soil;
   PlotOptions plots;
 };
@@ -129,6 +133,9 @@ struct UavOptions {
   double underestimate = 0.25;      ///< fraction of the canopy's height lost besides smoothing
   double dome = 0.04;               ///< height error of a corner against the centre [m]
   double holes = 0.01;              ///< fraction of the area without points
+  /// Cells of what is sampled are at most so large, and two to a gsd at least [m]: a hectare takes
+  /// gigabytes in fine ones.
+  double canvas = 0.008;
   MosaicOptions mosaic;
   ColourOptions colour;
 };
@@ -151,6 +158,9 @@ struct UgvOptions {
   double side_points = 0.25;   ///< share of steps in height that get points on their side
   double outliers = 0.002;     ///< fraction of flying points
   double drift = 0.005;        ///< largest drift of the path over its length
+  /// There and back: twice the strip, the second time the other way round and beside the first.
+  bool back = false;
+  double back_aside = 2.0;  ///< of the second pass from the first, to the left [m]
   ColourOptions colour;
 };
 void listOptions(OptionTable& table, UgvOptions& options);

@@ -122,6 +122,7 @@ Evidence measureEvidence(const correlation::StripScore& score, const Eigen::Affi
     if (block->agrees) ++evidence.agreeing;
   }
   evidence.parts = findDisplacedParts(score, pose);
+  evidence.parts.turn = space.turn;
   return evidence;
 }
 

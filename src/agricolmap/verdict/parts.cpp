@@ -189,9 +189,9 @@ PartsReport findDisplacedParts(const correlation::StripScore& score, const Eigen
   }
   if (report.displaced.empty()) return report;
   report.probability = 1.0 / (1.0 + std::exp(path.log_odds));
-  const std::vector<SliceOffset> offsets = offsetsOf(slices, path.shifts);
-  report.rms = rmsOf(offsets);
-  if (report.apart()) report.larger = largerPose(offsets, score.strip(), pose);
+  report.slices = offsetsOf(slices, path.shifts);
+  report.rms = rmsOf(report.slices);
+  if (report.apart()) report.larger = largerPose(report.slices, score.strip(), pose);
   return report;
 }
 

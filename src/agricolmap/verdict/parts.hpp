@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "agricolmap/verdict/slices.hpp"
+#include "agricolmap/verdict/slip.hpp"
 
 namespace agricolmap::verdict {
 
@@ -29,9 +30,13 @@ struct DisplacedPart {
 
 struct PartsReport {
   double length = 0.0;  ///< of the strip [m]
+  double turn = 0.0;    ///< of the levelled frame against the compass, see SearchSpace [rad]
   /// From the low end to the high end as the pose lays them, fixed levelled frame, unit length.
   Eigen::Vector2d along = Eigen::Vector2d::UnitX();
   std::vector<DisplacedPart> displaced;  ///< in order along the strip; empty: none is
+  /// Where its slices lie beside where the pose puts them, in order; none where no part is
+  /// displaced.
+  std::vector<SliceOffset> slices;
   /// How far the strip lies beside where the pose puts it, root mean square over its slices [m]; 0
   /// when no part is displaced.
   double rms = 0.0;

@@ -44,7 +44,11 @@ std::string describe(const DisplacedPart& part, const PartsReport& report) {
 
 }  // namespace
 
-std::string describe(const PartsReport& report) {
+std::string describe(const PartsReport& levelled) {
+  PartsReport report = levelled;
+  const Eigen::Rotation2Dd back(-report.turn);
+  report.along = back * report.along;
+  for (DisplacedPart& part : report.displaced) part.offset = back * part.offset;
   const auto larger = [](const DisplacedPart& a, const DisplacedPart& b) {
     return a.offset.norm() * (a.end - a.begin) < b.offset.norm() * (b.end - b.begin);
   };

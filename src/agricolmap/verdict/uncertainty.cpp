@@ -29,6 +29,8 @@ namespace {
 constexpr std::size_t kLeastBlocks = 4;
 constexpr int kParameters = 5;
 constexpr double kLeastRadius = 0.5;  // [m]
+/// Per axis, of what is left when nothing disagrees along a strip [m]; from calibration.
+constexpr double kCommon = 0.003;
 
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Square = Eigen::Matrix<double, kParameters, kParameters>;
@@ -45,13 +47,21 @@ Eigen::Matrix<double, 2, 5> PoseUncertainty::jacobian(const Eigen::Vector2d& fix
   return j;
 }
 
-Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight() const {
+Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight(double turn) const {
   // Between the shifts in the plane and the heading stands the height, which hangs on none of them.
   constexpr std::array<int, kParameters> kPlace = {0, 1, 3, 4, 5};
   Eigen::Matrix<double, 6, 6> with_height = Eigen::Matrix<double, 6, 6>::Zero();
-  with_height(kPlace, kPlace) = covariance;
+  Eigen::Matrix<double, kParameters, kParameters> back =
+      Eigen::Matrix<double, kParameters, kParameters>::Identity();
+  back.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-turn).toRotationMatrix();
+  with_height(kPlace, kPlace) = back * covariance * back.transpose();
   with_height(2, 2) = height_deviation * height_deviation;
   return with_height;
+}
+
+Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix2d& of_fit) {
+  const double common = 0.5 * pose.systematic_rms * pose.systematic_rms + kCommon * kCommon;
+  return of_fit + common * Eigen::Matrix2d::Identity();
 }
 
 namespace {

@@ -42,8 +42,9 @@ struct PoseUncertainty {
   double systematic_rms = 0.0;
   double local_rms = 0.0;  ///< what the blocks differ by after the best affine: drift, wind [m]
 
-  /// With the height among the shifts: of (δx, δy, δz [m], δψ [rad], δa, δb).
-  Eigen::Matrix<double, 6, 6> covarianceWithHeight() const;
+  /// With the height among the shifts: of (δx, δy, δz [m], δψ [rad], δa, δb), along the axes of a
+  /// frame against which the levelled one is turned by `turn` [rad].
+  Eigen::Matrix<double, 6, 6> covarianceWithHeight(double turn = 0.0) const;
   /// Derivative of a point's displacement to the five parameters.
   Eigen::Matrix<double, 2, 5> jacobian(const Eigen::Vector2d& fixed) const;
   /// Covariance of a point's horizontal position [m²].
@@ -52,6 +53,10 @@ struct PoseUncertainty {
     return j * covariance * j.transpose();
   }
 };
+
+/// Covariance of a place of a strip whose bend is followed [m²]: what the fit of the bend says of
+/// it, and what all blocks may have in common.
+Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix2d& of_fit);
 
 /// Nothing when too few blocks can be compared. `fixed`, `moving`: of the same cell size, fine
 /// enough for centimetres. `systematic`: error that all blocks may have in common,

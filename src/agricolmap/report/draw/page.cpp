@@ -95,10 +95,10 @@ void drawScaleBar(PictureCanvas& canvas, const View& view) {
                stroke);
 }
 
-void drawNorth(PictureCanvas& canvas, const View& view) {
+void drawNorth(PictureCanvas& canvas, const View& view, double turn) {
   const PixelRect plate{view.rect.x + view.rect.width - 48, view.rect.y + 8, 40, 40};
   canvas.fill(plate, hexColour(0xffffff, 0.85));
-  const Eigen::Vector2d up = view.direction({0.0, 1.0}).normalized();
+  const Eigen::Vector2d up = view.direction({-std::sin(turn), std::cos(turn)}).normalized();
   // The letter stands behind the arrow's tail side, the arrow points away from it.
   const Eigen::Vector2d middle = plate.middle();
   canvas.arrow(middle - 2.0 * up - 13.0 * up, middle + 3.0 * up, {2.0, palette::kInk, {}});

@@ -41,8 +41,9 @@ class Page {
 
 /// A bar of a round length with its label, in the lower left corner of the view.
 void drawScaleBar(PictureCanvas& canvas, const View& view);
-/// An arrow to the north (the levelled y axis), in the upper right corner of the view.
-void drawNorth(PictureCanvas& canvas, const View& view);
+/// An arrow to the north, in the upper right corner of the view: the levelled y axis, or what is
+/// `turn` [rad] counter-clockwise of it.
+void drawNorth(PictureCanvas& canvas, const View& view, double turn = 0.0);
 /// Text on a plate in the upper left corner of the view.
 void drawPlate(PictureCanvas& canvas, const View& view, const std::string& text);
 

@@ -141,12 +141,13 @@ Json residualsJson(const pipeline::Registration& registration) {
 Json partsJson(const verdict::PartsReport& parts) {
   Json json;
   json["rms_m"] = number(parts.rms);
-  json["along"] = vectorJson(parts.along);
+  const Eigen::Rotation2Dd back(-parts.turn);
+  json["along"] = vectorJson((back * parts.along).eval());
   Json displaced = Json::array();
   for (const verdict::DisplacedPart& part : parts.displaced) {
     displaced.push_back({{"begin_m", number(part.begin)},
                          {"end_m", number(part.end)},
-                         {"offset_m", vectorJson(part.offset)},
+                         {"offset_m", vectorJson((back * part.offset).eval())},
                          {"significance", number(part.significance)},
                          {"uniqueness", number(part.uniqueness)}});
   }
@@ -162,9 +163,10 @@ Json evidenceJson(const verdict::Evidence& evidence) {
   json["agreement"] = number(evidence.agreement());
   json["agreeing_blocks"] = evidence.agreeing;
   Json blocks = Json::array();
+  const Eigen::Rotation2Dd back(-evidence.parts.turn);
   for (const verdict::BlockEvidence& block : evidence.blocks) {
-    blocks.push_back({{"place_m", vectorJson(block.place)},
-                      {"offset_m", vectorJson(block.offset)},
+    blocks.push_back({{"place_m", vectorJson((back * block.place).eval())},
+                      {"offset_m", vectorJson((back * block.offset).eval())},
                       {"agrees", block.agrees}});
   }
   json["blocks"] = std::move(blocks);
@@ -176,8 +178,10 @@ Json evidenceJson(const verdict::Evidence& evidence) {
 Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registration) {
   if (!registration.transform.has_value() || !registration.placed->uncertainty) return nullptr;
   const verdict::PoseUncertainty& uncertainty = *registration.placed->uncertainty;
-  const Eigen::Matrix<double, 6, 6> covariance = uncertainty.covarianceWithHeight();
-  // The levelled frame is turned into the file's by a tilt alone.
+  const double turn = registration.maps.frames.turn;
+  const Eigen::Rotation2Dd back(-turn);
+  const Eigen::Matrix<double, 6, 6> covariance = uncertainty.covarianceWithHeight(turn);
+  // The levelled frame is turned into the file's by `back` and a tilt.
   const Eigen::Affine3d file_from_levelled = registration.maps.frames.levelled_from_fixed.inverse();
   const Eigen::Vector3d centre =
       file_from_levelled * Eigen::Vector3d(uncertainty.centre.x(), uncertainty.centre.y(),
@@ -187,8 +191,8 @@ Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registrat
   json["covariance"] = matrixJson(covariance);
   json["deviations"] = vectorJson(covariance.diagonal().cwiseSqrt());
   json["centre_m"] = vectorJson((fixed.origin + centre).eval());
-  json["axis_x"] = vectorJson(uncertainty.axes.col(0));
-  json["axis_y"] = vectorJson(uncertainty.axes.col(1));
+  json["axis_x"] = vectorJson((back * uncertainty.axes.col(0)).eval());
+  json["axis_y"] = vectorJson((back * uncertainty.axes.col(1)).eval());
   json["expected_rms_m"] = number(uncertainty.expected_rms);
   json["systematic_rms_m"] = number(uncertainty.systematic_rms);
   json["local_rms_m"] = number(uncertainty.local_rms);

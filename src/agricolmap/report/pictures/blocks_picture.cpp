@@ -148,7 +148,7 @@ void writeBlocksPicture(const io::OutputPath& path, const Scene& scene) {
                 {16.0, hexColour(0xffffff), true, Align::kCentre});
   }
   drawScaleBar(canvas, view);
-  drawNorth(canvas, view);
+  drawNorth(canvas, view, scene.registration.maps.frames.turn);
   const int below = page.top + height;
   drawLegend(canvas, {kMargin, below + 26.0},
              {{LegendItem::Kind::kArrow, kAgrees, "agrees", {}},

@@ -163,7 +163,7 @@ void writeFlowPicture(const io::OutputPath& path, const Scene& scene) {
     }
   }
   drawScaleBar(canvas, view);
-  drawNorth(canvas, view);
+  drawNorth(canvas, view, scene.registration.maps.frames.turn);
   drawSidebar(canvas, scene, kMargin + kPanelWidth + kGap + 8, page.top);
   canvas.write(path);
 }

@@ -57,8 +57,9 @@ PixelRect panelFor(const GroundRect& ground, int x, int y) {
           std::max(40, static_cast<int>(2.0 * scale * ground.half_extent.y()))};
 }
 
-void drawMap(PictureCanvas& canvas, const MapLayer& layer, const ValueRange& range,
-             const SoilToLeaf& map, const PixelRect& rect, const std::string& title) {
+void drawMap(PictureCanvas& canvas, const Scene& scene, const MapLayer& layer,
+             const ValueRange& range, const SoilToLeaf& map, const PixelRect& rect,
+             const std::string& title) {
   const GridFrame& frame = layer.map().frame;
   canvas.text({static_cast<double>(rect.x), rect.y - 9.0},
               canvas.elided(title, kPanelWidth, {15.0, palette::kInk, true}),
@@ -73,7 +74,7 @@ void drawMap(PictureCanvas& canvas, const MapLayer& layer, const ValueRange& ran
   });
   canvas.frame(rect, {1.0, hexColour(0x8a9099), {}});
   drawScaleBar(canvas, view);
-  drawNorth(canvas, view);
+  drawNorth(canvas, view, scene.registration.maps.frames.turn);
   const double cells = static_cast<double>(layer.map().weight.size());
   canvas.text(
       {static_cast<double>(rect.x), rect.y + rect.height + 19.0},
@@ -123,9 +124,9 @@ void writeMapsPicture(const io::OutputPath& path, const Scene& scene) {
                          std::max(scene.fixed.quantile(0.99), scene.moving.quantile(0.99)) + 1e-6};
   const SoilToLeaf map;
   const int top = page.top + kTitleRoom;
-  drawMap(page.canvas, scene.fixed, range, map, panelFor(fixed, kMargin, top),
+  drawMap(page.canvas, scene, scene.fixed, range, map, panelFor(fixed, kMargin, top),
           "Fixed: " + scene.info.fixed_name);
-  drawMap(page.canvas, scene.moving, range, map,
+  drawMap(page.canvas, scene, scene.moving, range, map,
           panelFor(moving, kMargin + kPanelWidth + kGap, top), "Moving: " + scene.info.moving_name);
   drawColourBar(page.canvas, scene, range, map, top + height + kCaptionRoom + 10);
   page.canvas.write(path);

@@ -80,7 +80,7 @@ class OverlayPainter {
     drawPlate(canvas_, view,
               fmt::format("{}: {:g} × {:g} m", kInsetNames[i], kInsetSide, kInsetSide));
     drawScaleBar(canvas_, view);
-    drawNorth(canvas_, view);
+    drawNorth(canvas_, view, scene_.registration.maps.frames.turn);
   }
 
   void drawStrip(const PixelRect& rect) {
@@ -89,7 +89,7 @@ class OverlayPainter {
     outline(view, {1.0, hexColour(0xffffff, 0.7), {}});
     markInsets(view);
     drawScaleBar(canvas_, view);
-    drawNorth(canvas_, view);
+    drawNorth(canvas_, view, scene_.registration.maps.frames.turn);
   }
 
   void drawOverview(const PixelRect& rect) {
@@ -102,7 +102,7 @@ class OverlayPainter {
     outline(view, {2.0, hexColour(0xffffff), {}});
     drawPlate(canvas_, view, "Whole map");
     drawScaleBar(canvas_, view);
-    drawNorth(canvas_, view);
+    drawNorth(canvas_, view, scene_.registration.maps.frames.turn);
   }
 
  private:

@@ -28,6 +28,9 @@ constexpr std::uint64_t kStoneSeed = 23;
 
 constexpr double kBiggestPlot = 1.6;  // plants over the field's
 
+constexpr double kNarrowRelief = 0.26;  // over the wide
+constexpr double kTerraceRamp = 0.5;    // from one terrace to the next [m]
+
 constexpr double kTrackGauge = 1.8;
 constexpr double kTrackWidth = 0.36;
 
@@ -126,13 +129,25 @@ double FieldModel::soilHeight(const Eigen::Vector2d& point) const {
   const Eigen::Vector2d uv = rowCoordinates(point);
   const std::uint64_t seed = hashBits(seed_, kRelief);
   double z = slope_.dot(point);
-  z += options_.relief * static_cast<double>(noiseAt(seed, point.x() / 5.0, point.y() / 5.0));
-  z += 0.35 * options_.relief *
-       static_cast<double>(noiseAt(seed + 1, point.x() / 1.3, point.y() / 1.3));
+  const Eigen::Vector2d wide = point / options_.relief_length;
+  const Eigen::Vector2d narrow = point / (kNarrowRelief * options_.relief_length);
+  z += options_.relief * static_cast<double>(noiseAt(seed, wide.x(), wide.y()));
+  z += 0.35 * options_.relief * static_cast<double>(noiseAt(seed + 1, narrow.x(), narrow.y()));
+  z += terraceHeight(uv.x());
   const double track = static_cast<double>(wheelTrack(uv.y()));
   z += (1.0 - track) * options_.ridge *
        std::cos(2.0 * std::numbers::pi * uv.y() / options_.row_spacing - std::numbers::pi);
-  return z - 0.03 * track;
+  return z - options_.track_depth * track;
+}
+
+double FieldModel::terraceHeight(double along) const {
+  if (options_.terrace <= 0.0) return 0.0;
+  // Flat, but for a short ramp at the end of each.
+  const double at = along / options_.terrace_length;
+  const double step = std::floor(at);
+  const double ramp = std::min(1.0, kTerraceRamp / options_.terrace_length);
+  const double up = std::max(0.0, (at - step - (1.0 - ramp)) / ramp);
+  return options_.terrace * (step + up);
 }
 
 bool FieldModel::missing(std::int64_t row, std::int64_t index, double u) const {

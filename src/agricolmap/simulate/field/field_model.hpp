@@ -87,6 +87,7 @@ class FieldModel {
   void addRow(std::int64_t row, const Sown& sown, double u_min, double u_max, const Window& window,
               double margin, std::vector<Plant>& plants) const;
   Plot plotAt(std::int64_t row, double along) const;
+  double terraceHeight(double along) const;
   bool missing(std::int64_t row, std::int64_t index, double u) const;
 
   Species species_;

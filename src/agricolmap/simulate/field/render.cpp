@@ -238,17 +238,28 @@ std::vector<std::vector<std::uint32_t>> plantsPerTile(const std::vector<Plant>& 
                                                       const std::vector<Tile>& tiles,
                                                       const Window& window, double farther) {
   std::vector<std::vector<std::uint32_t>> lists(tiles.size());
+  const int tile_cols = (window.cols + kTileCells - 1) / kTileCells;
+  const int tile_rows = (window.rows + kTileCells - 1) / kTileCells;
+  const auto firstOf = [](double from) {
+    return std::max(0, static_cast<int>(std::ceil(from / kTileCells)) - 1);
+  };
+  const auto lastOf = [](double to, int count) {
+    return std::min(count - 1, static_cast<int>(std::floor(to / kTileCells)));
+  };
   for (std::size_t i = 0; i < plants.size(); ++i) {
     const Plant& plant = plants[i];
     const Eigen::Vector2d at = window.local(plant.position.cast<double>()) / window.cell;
     const double reach = 0.03 / window.cell + reachOf(plant.species) *
                                                   static_cast<double>(plant.size) * farther /
                                                   window.cell;
-    for (std::size_t k = 0; k < tiles.size(); ++k) {
-      const Tile& tile = tiles[k];
-      if (at.x() + reach >= tile.col0 && at.x() - reach <= tile.col1 &&
-          at.y() + reach >= tile.row0 && at.y() - reach <= tile.row1) {
-        lists[k].push_back(static_cast<std::uint32_t>(i));
+    const int last_row = lastOf(at.y() + reach, tile_rows);
+    const int last_col = lastOf(at.x() + reach, tile_cols);
+    for (int row = firstOf(at.y() - reach); row <= last_row; ++row) {
+      for (int col = firstOf(at.x() - reach); col <= last_col; ++col) {
+        const auto k = static_cast<std::size_t>(row * tile_cols + col);
+        if (at.x() - reach <= tiles[k].col1 && at.y() - reach <= tiles[k].row1) {
+          lists[k].push_back(static_cast<std::uint32_t>(i));
+        }
       }
     }
   }

@@ -14,6 +14,7 @@ namespace agricolmap::simulate {
 struct FieldPoints {
   std::vector<Eigen::Vector3f> xyz;
   std::vector<Rgb> rgb;
+  std::size_t there = static_cast<std::size_t>(-1);  ///< points from this on are of the way back
 };
 
 /// Parts one after another.

@@ -88,6 +88,9 @@ SimulatedStrip SimulatedOrtho::strip(const SimulationOptions& options, int index
   if (options.beyond_map) {
     throw UsageError("beyond_map needs a simulated field: a mosaic ends where its map does");
   }
+  if (options.ugv.back) {
+    throw UsageError("ugv.back needs a simulated field: of a mosaic one pass is taken");
+  }
   const auto seed = [&](std::uint64_t purpose) {
     return stripSeed(seedOf(options, purpose), index);
   };

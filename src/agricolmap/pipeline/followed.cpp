@@ -1,0 +1,127 @@
+#include "agricolmap/pipeline/followed.hpp"
+
+#include <cmath>
+
+#include "agricolmap/core/parallel.hpp"
+
+namespace agricolmap::pipeline {
+namespace {
+
+/// What may be lost in drawing the straightened map: of the significance, which hangs on the finest
+/// that the maps show, and of the correlation.
+constexpr double kLeastKept = 0.8;
+constexpr double kMostLost = 0.01;
+
+/// What the slices of the evidence tell of where pieces of the strip lie.
+std::vector<deform::PieceOffset> piecesOf(const verdict::PartsReport& parts) {
+  std::vector<deform::PieceOffset> pieces;
+  for (const verdict::SliceOffset& slice : parts.slices) {
+    pieces.push_back({slice.along + 0.5 * parts.length, slice.offset});
+  }
+  return pieces;
+}
+
+/// Whether the strip, bend taken out, is one and fits no worse.
+bool fitsAsOne(const Placed& straight, const Placed& bent) {
+  return straight.uncertainty && !straight.evidence.parts.apart() &&
+         straight.heights.status == refine::VerticalStatus::kOk &&
+         straight.evidence.agreement() >= bent.evidence.agreement() - 1e-9 &&
+         straight.evidence.significance >= kLeastKept * bent.evidence.significance &&
+         straight.correlation >= bent.correlation - kMostLost;
+}
+
+}  // namespace
+
+void followBends(const refine::PairSignals& signals, const SearchSpace& space,
+                 const Refined& refined, const RegistrationOptions& options, Monitor& monitor,
+                 Placed& placed) {
+  if (options.deform.kind == deform::DeformKind::kNone || options.refine != RefineKind::kDense ||
+      placed.heights.status != refine::VerticalStatus::kOk) {
+    return;
+  }
+  std::optional<deform::Bend> bend = monitor.run(Stage::kDeform, [&] {
+    return deform::followBend(signals, placed.pose, placed.heights, piecesOf(placed.evidence.parts),
+                              options.deform);
+  });
+  if (!bend) return;
+  Followed followed = monitor.run(Stage::kDeform, [&] {
+    map::GridMap straight = deform::straightened(signals.moving().grid(), *bend);
+    return Followed{*std::move(bend), std::move(straight)};
+  });
+  const correlation::MapSignals moving(followed.straight, options.signal);
+  const refine::PairSignals straight = monitor.run(Stage::kDeform, [&] {
+    return refine::PairSignals(signals.fixed(), moving, options.hidden, options.filter);
+  });
+  refine::RefinedPose pose = *refined.best;
+  pose.pose = followed.bend.pose;
+  Placed next = measure(straight, space, pose, refined, options, monitor);
+  if (!fitsAsOne(next, placed)) return;
+  next.followed = std::move(followed);
+  placed = std::move(next);
+}
+
+Displacement::Displacement(const Registration& registration, const Cloud& moving)
+    : registration_(registration),
+      levelled_from_moving_(registration.maps.frames.levelled_from_moving *
+                            Eigen::Translation3d(-moving.origin)),
+      file_from_levelled_(registration.maps.frames.levelled_from_fixed.inverse().linear()) {}
+
+Eigen::Vector3d Displacement::inFile(const Eigen::Vector3d& levelled) const {
+  return file_from_levelled_ * levelled;
+}
+
+Eigen::Vector3d Displacement::at(const Eigen::Vector3d& moving_point) const {
+  Eigen::Vector3d straight = levelled_from_moving_ * moving_point;
+  if (registration_.maps.bend) straight = registration_.maps.bend->bent(straight);
+  if (registration_.placed->followed) {
+    const deform::Bend& bend = registration_.placed->followed->bend;
+    straight = deform::unbent(straight, bend.deformation, bend.pose);
+  }
+  const Eigen::Vector3d place =
+      registration_.transform->fixed_from_bent * (levelled_from_moving_.inverse() * straight);
+  return place - registration_.transform->fixed_from_moving * moving_point;
+}
+
+Eigen::Vector3d Displacement::placeOnPath(double along) const {
+  const Placed& placed = *registration_.placed;
+  const deform::Deformation& deformation = placed.followed->bend.deformation;
+  Eigen::Vector3d levelled(0.0, 0.0, 0.0);
+  levelled.head<2>() = deformation.path().point(along);
+  const Eigen::Vector3d file = levelled_from_moving_.inverse() * levelled;
+  return registration_.transform->fixed_from_moving * file + at(file);
+}
+
+Eigen::Matrix3d Displacement::covarianceOnPath(double along) const {
+  const Placed& placed = *registration_.placed;
+  const deform::Deformation& deformation = placed.followed->bend.deformation;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner<2, 2>() = verdict::placeCovariance(
+      *placed.uncertainty, deformation.covarianceAt(deformation.path().point(along)));
+  covariance(2, 2) =
+      std::pow(placed.uncertainty->height_deviation, 2) + std::pow(deformation.height_deviation, 2);
+  return file_from_levelled_ * covariance * file_from_levelled_.transpose();
+}
+
+Cloud alignedCloud(const Registration& registration, const Cloud& moving) {
+  const Eigen::Affine3d& transform = registration.transform->fixed_from_moving;
+  Cloud aligned;
+  aligned.name = moving.name;
+  aligned.rgb = moving.rgb;
+  aligned.origin = (transform * moving.origin).array().round().matrix();
+  aligned.xyz.resize(moving.size());
+  const std::optional<Displacement> displacement =
+      registration.bent() ? std::optional<Displacement>(std::in_place, registration, moving)
+                          : std::nullopt;
+  parallelFor(
+      moving.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3d point = moving.filePoint(i);
+        Eigen::Vector3d place = transform * point;
+        if (displacement) place += displacement->at(point);
+        aligned.xyz[i] = (place - aligned.origin).cast<float>();
+      },
+      1U << 12);
+  return aligned;
+}
+
+}  // namespace agricolmap::pipeline

@@ -1,0 +1,60 @@
+// A strip so long that dead reckoning bends it beyond what one pose undoes: it is found by one of
+// its pieces, followed from there along its path, and laid straight before it is looked at as a
+// whole.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "agricolmap/core/monitor.hpp"
+#include "agricolmap/pieces/chain.hpp"
+#include "agricolmap/pipeline/maps.hpp"
+
+namespace agricolmap::pipeline {
+
+/// The path along which the strip is placed by pieces; nothing where it is placed as a whole, being
+/// short or by another chain. `places`: of the robot, in the moving file's coordinates; none: the
+/// strip's shape tells its path. Warns where the strip is long and it does not, and where a path
+/// makes no difference.
+std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen::Vector3d>& places,
+                                   const PairMaps& maps, const RegistrationOptions& options,
+                                   Monitor& monitor);
+
+/// Where along the path a piece is looked for first, second and so on, as if it were all there is
+/// [m]: pieces that show much, those in the middle before others when there is a guess, since a
+/// wrong heading and scale move them least.
+std::vector<double> anchorsOf(const deform::Path& path, const map::SignalMap& signals,
+                              const RegistrationOptions& options);
+
+/// The maps of the piece about `along`, as long as the search looks for, and of what it can reach;
+/// nothing when the guess lays it beside the fixed map.
+std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& path, double along,
+                                    const RegistrationOptions& options);
+
+/// The fixed map as far as the strip can lie in it, whose piece about `along` has `pose`.
+map::GridMap fixedAlong(const PairMaps& maps, const deform::Path& path, double along,
+                        const Eigen::Affine2d& pose, const RegistrationOptions& options);
+
+/// The chain from a piece's pose, and the same as one pose and a bend.
+struct FollowedPieces {
+  std::vector<pieces::PiecePose> chain;
+  std::optional<pieces::Joined> joined;
+  double significance = 0.0;
+};
+/// From each of `poses` of the piece about `along`; the most significant first, that one with what
+/// its pieces' heights are short of.
+std::vector<FollowedPieces> followFrom(const std::vector<Eigen::Affine2d>& poses,
+                                       const refine::PairSignals& signals, const deform::Path& path,
+                                       double along, const RegistrationOptions& options);
+
+/// The part of the strip's ends that were not found although the fixed map shows where they should
+/// be, in plain words, and how long it is [m]; empty when there is none to speak of.
+struct LostEnd {
+  std::string words;
+  double length = 0.0;
+};
+std::optional<LostEnd> lostEnd(const FollowedPieces& followed, const deform::Path& path,
+                               const map::SignalMap& fixed);
+
+}  // namespace agricolmap::pipeline
