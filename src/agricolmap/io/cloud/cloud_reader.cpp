@@ -8,6 +8,8 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/pcd_reader.hpp"
 #include "agricolmap/io/cloud/ply_reader.hpp"
+#include "agricolmap/io/las/las_header.hpp"
+#include "agricolmap/io/las/las_reader.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 #include "agricolmap/io/text/text.hpp"
 
@@ -31,13 +33,12 @@ bool looksLikePcd(std::string_view text) {
 }
 
 std::string_view remedyFor(std::string_view text) {
-  if (text.starts_with("LASF")) return "it is LAS or LAZ; convert it, e.g. with `pdal translate`";
   if (text.starts_with("II*") || text.starts_with("MM") || text.starts_with("II+")) {
     return "it is a TIFF raster; orthophoto and surface model can be imported";
   }
   if (text.starts_with("\x89PNG")) return "it is a PNG picture";
   if (text.starts_with("ply\r")) return "its lines end in CR alone; convert it with mac2unix";
-  return "known are PLY and PCD";
+  return "known are PLY, PCD, LAS and LAZ";
 }
 
 }  // namespace
@@ -47,6 +48,7 @@ Cloud readCloud(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   if (looksLikePly(file.text())) return readPly(file, name, options);
   if (looksLikePcd(file.text().substr(0, 1U << 16))) return readPcd(file, name, options);
+  if (looksLikeLas(file.text())) return readLas(file, name, options);
   throw InputError(fmt::format("{}: not a point cloud: {}", name, remedyFor(file.text())));
 }
 

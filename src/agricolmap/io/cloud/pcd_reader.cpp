@@ -325,11 +325,8 @@ Cloud readAscii(const Header& header, const Roles& roles, std::string_view text,
   return cloud;
 }
 
-}  // namespace
-
-Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
-  const Header header = Parser(file.text(), name).parse();
-  const Roles roles = findRoles(header, name, options);
+Cloud readPoints(const Header& header, const Roles& roles, const MappedFile& file,
+                 const std::string& name) {
   const std::span<const std::byte> data = file.bytes().subspan(header.bytes);
   switch (header.encoding) {
     case Encoding::kAscii:
@@ -347,6 +344,17 @@ Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions
   const std::vector<std::byte> plain = decompress(header, data, name, rest);
   Cloud cloud = assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name);
   warnOfRest(rest, "bytes", cloud);
+  return cloud;
+}
+
+}  // namespace
+
+Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+  const Header header = Parser(file.text(), name).parse();
+  Cloud cloud = readPoints(header, findRoles(header, name, options), file, name);
+  std::vector<std::string> names;
+  for (const Field& field : header.fields) names.push_back(field.name);
+  cloud.fields = fieldList(names);
   return cloud;
 }
 

@@ -293,6 +293,9 @@ Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions
   Cloud cloud = header.format == PlyFormat::kAscii
                     ? readAscii(header, layout, file.text().substr(header.bytes), name)
                     : readBinary(header, layout, file.bytes().subspan(header.bytes), name);
+  std::vector<std::string> names;
+  for (const PlyProperty& property : layout.vertex->properties) names.push_back(property.name);
+  cloud.fields = fieldList(names);
   if (layout.partly_coloured) {
     cloud.warnings.push_back(fmt::format(
         "{}: its colours are incomplete (red, green and blue are needed); ignored", name));
