@@ -17,8 +17,6 @@ namespace {
 
 /// Nothing on Earth has larger projected coordinates; beyond are uninitialised values.
 constexpr double kMaxCoordinate = 1e8;
-/// No field is so large: what lies farther from the origin is a placeholder or a mismatch [m].
-constexpr double kMaxFromOrigin = 2e4;
 /// A first point that is nearer than this to the middle is one of the cloud's [m].
 constexpr double kOfTheCloud = 1e3;
 /// Points that the middle is taken from, about, and the most chunks that they are looked for in.
@@ -27,6 +25,28 @@ constexpr std::size_t kSampledChunks = 8;  // spread over the file: decoding all
 constexpr std::size_t kEnoughSamples = 100;
 /// From here on 32-bit floats are coarser than 0.8 cm.
 constexpr double kFarForFloat = 1e5;
+
+/// The points of another source, brought into other coordinates.
+class MappedSource : public PointSource {
+ public:
+  MappedSource(const PointSource& source, const CoordinateMap& map) : source_(source), map_(map) {}
+  std::size_t points() const override { return source_.points(); }
+  std::size_t chunks() const override { return source_.chunks(); }
+  std::size_t firstPoint(std::size_t chunk) const override { return source_.firstPoint(chunk); }
+  ColourKind colourKind() const override { return source_.colourKind(); }
+  bool floatCoordinates() const override { return source_.floatCoordinates(); }
+  void decode(std::size_t chunk, const Sink& sink) const override {
+    source_.decode(chunk, [&](const PointBlock& block) {
+      PointBlock mapped = block;
+      map_.apply(mapped.xyz[0].data(), mapped.xyz[1].data(), mapped.xyz[2].data(), block.count);
+      sink(mapped);
+    });
+  }
+
+ private:
+  const PointSource& source_;
+  const CoordinateMap& map_;
+};
 
 bool isWide(ColourKind kind) {
   return kind == ColourKind::kWideInteger || kind == ColourKind::kWideFloat;
@@ -260,7 +280,8 @@ void checkDropped(const PointSource& source, const Tally& tally, Cloud& cloud) {
 
 }  // namespace
 
-Cloud assembleCloud(const PointSource& source, const std::string& name) {
+Cloud assembleCloud(const PointSource& source, const std::string& name, const CoordinateMap* map) {
+  if (map != nullptr) return assembleCloud(MappedSource(source, *map), name);
   Cloud cloud;
   cloud.name = name;
   cloud.origin = chooseOrigin(source);

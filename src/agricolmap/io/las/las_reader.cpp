@@ -93,7 +93,7 @@ std::string extraNames(const LasHeader& header) {
 Cloud readLas(const MappedFile& file, const std::string& name, const ReadOptions& options) {
   const LasHeader header = parseLasHeader(file.bytes(), name);
   const auto points = lasPoints(file.bytes(), header, name);
-  Cloud cloud = assembleCloud(LasSource(header, *points, options.colours), name);
+  Cloud cloud = assembleCloud(LasSource(header, *points, options.colours), name, options.map);
   dropBlackColours(cloud);
   cloud.fields = lasFields(header.layout);
   const std::string extra = extraNames(header);
