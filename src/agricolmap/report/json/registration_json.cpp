@@ -47,6 +47,9 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::F
   json["dropped_points"] = cloud.dropped_points;
   json["stray_points"] = footprint.left_out;
   json["has_colour"] = cloud.hasColour();
+  json["crs"] = cloud.crs.wkt.empty()
+                    ? Json(nullptr)
+                    : Json{{"name", validUtf8(cloud.crs.name)}, {"wkt", validUtf8(cloud.crs.wkt)}};
   json["origin_m"] = vectorJson(cloud.origin);
   const Box3 box = boundingBox(cloud);
   json["box_min_m"] = vectorJson((cloud.origin + box.min.cast<double>()).eval());
