@@ -12,6 +12,7 @@
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/report/json/registration_json.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
@@ -103,7 +104,11 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
   if (keep) {
     monitor.run(Stage::kWrite, [&] {
       io::writeMatrix(output.path("transform.txt"), result.transform->fixed_from_moving);
-      io::writePly(output.path("aligned.ply"), pair.moving, result.transform->fixed_from_moving);
+      if (result.placed->followed) {
+        io::writePly(output.path("aligned.ply"), pipeline::alignedCloud(result, pair.moving));
+      } else {
+        io::writePly(output.path("aligned.ply"), pair.moving, result.transform->fixed_from_moving);
+      }
     });
   }
   if (arguments.no_pictures) return {};

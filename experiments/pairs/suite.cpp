@@ -51,6 +51,7 @@ const std::vector<Entry>& entries() {
     add("dates", dateCases, 20, 5001, 0);
     add("mirrored", mirroredDateCases, 20, 5001, 0);
     add("slips", slipCases, 1, 5001, 0);
+    add("bends", bendCases, 1, 7001, 0);
     add("other-generator", otherGeneratorCases, 4, 1001, 1000);  // as its script's
     return made;
   }();
