@@ -7,6 +7,7 @@
 #include "agricolmap/config/json.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/angles.hpp"
+#include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/pipeline/registration.hpp"
