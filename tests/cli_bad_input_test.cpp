@@ -82,7 +82,7 @@ TEST_F(BadInputTest, NothingButPointsThatAreNotFinite) {
 
 TEST_F(BadInputTest, NoColours) {
   const std::string grey = write("grey.ply", plyBytes(bumpySquare(3.0), false));
-  expectRefused(grey, {"no colours", "--geometry-only"});
+  expectRefused(grey, {"no colours", "(it has x, y, z", "--geometry-only"});
 }
 
 TEST_F(BadInputTest, OnePoint) {

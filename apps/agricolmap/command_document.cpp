@@ -49,7 +49,8 @@ ExitCode runDocument() {
       "`views.ripening`, `views.soil_kept` and `views.soil_contrast` do nothing\nand are refused "
       "as "
       "flags. `uav.gsd` is at least the mosaic's.");
-  printSection<io::ImportOptions>("import", "From an orthomosaic and a surface model to a cloud.");
+  printSection<io::ImportOptions>(
+      "convert and import", "From an orthomosaic and a surface model to a cloud; flags only.");
   return ExitCode::kOk;
 }
 

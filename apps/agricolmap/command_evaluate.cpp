@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/core/angles.hpp"
@@ -21,6 +22,7 @@ struct EvaluateArguments {
   std::string moving;
   std::string truth;
   std::string truth_points;
+  std::string aligned;
   std::string output;
 };
 
@@ -63,11 +65,24 @@ ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals)
   const Eigen::Affine3d estimate = io::readMatrix(arguments.transform);
   const Cloud moving = io::readCloud(arguments.moving, {.colours = false});
   printWarnings(moving.warnings);
-  const evaluate::RegistrationErrors errors =
-      evaluate::evaluateTransform(estimate, readTruth(arguments, moving), moving);
+  const evaluate::Truth truth = readTruth(arguments, moving);
+  const evaluate::RegistrationErrors errors = evaluate::evaluateTransform(estimate, truth, moving);
+  std::optional<evaluate::RegistrationErrors> of_points;
+  if (!arguments.aligned.empty()) {
+    const Cloud aligned = io::readCloud(arguments.aligned, {.colours = false});
+    printWarnings(aligned.warnings);
+    of_points = evaluate::evaluateAligned(aligned, truth, moving);
+  }
   if (!arguments.output.empty()) {
     io::StagedFile output(arguments.output, globals.overwrite);
-    io::writeText(output.path(), toJson(errors).dump(2) + "\n");
+    nlohmann::ordered_json json = toJson(errors);
+    if (of_points) {
+      json["aligned"] = {{"rms_m", of_points->rms},
+                         {"rms_horizontal_m", of_points->rms_horizontal},
+                         {"rms_vertical_m", of_points->rms_vertical},
+                         {"worst_m", of_points->worst}};
+    }
+    io::writeText(output.path(), json.dump(2) + "\n");
     output.commit();
   }
   if (globals.quiet) return ExitCode::kOk;
@@ -79,6 +94,11 @@ ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals)
              degrees(errors.rotation), 100.0 * errors.scale);
   fmt::print("within limits      {} (RMS and e_t 0.05 m, e_r 0.1 rad, e_s 2.5 %)\n",
              errors.within({}) ? "yes" : "no");
+  if (of_points) {
+    fmt::print(
+        "aligned cloud      {:.4f} m ({:.4f} horizontal, {:.4f} vertical), largest {:.4f} m\n",
+        of_points->rms, of_points->rms_horizontal, of_points->rms_vertical, of_points->worst);
+  }
   return ExitCode::kOk;
 }
 
@@ -95,6 +115,8 @@ CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals) {
                       "True transform: 4x4 text, or 12 + 2 numbers as published with the paper");
   command->add_option("--truth-points", arguments->truth_points,
                       "Cloud with the true place of every moving point, in fixed file coordinates");
+  command->add_option("--aligned", arguments->aligned,
+                      "aligned.ply of the registration: its points are scored as they lie, too");
   command->add_option("-o,--output", arguments->output, "JSON file for the errors");
   return {command, [arguments, &globals] { return runEvaluate(*arguments, globals); }};
 }

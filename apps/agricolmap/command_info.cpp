@@ -5,30 +5,58 @@
 
 #include "agricolmap/core/stopwatch.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
 namespace {
 
+bool isMetric(const io::FileCrs& file) {
+  return !file.crs || (io::isProjected(*file.crs) && file.crs->horizontal_unit == 1.0 &&
+                       file.crs->vertical_unit == 1.0);
+}
+
+void printCrs(const io::FileCrs& file) {
+  if (!file.crs) {
+    fmt::print("system     not said; taken as metres\n");
+    return;
+  }
+  fmt::print("system     {}", file.crs->name);
+  if (!io::isProjected(*file.crs)) {
+    fmt::print(" (no metres)");
+  } else if (!isMetric(file)) {
+    fmt::print(" (units of {} m, heights of {} m)", file.crs->horizontal_unit,
+               file.crs->vertical_unit);
+  }
+  fmt::print("\n");
+}
+
 ExitCode runInfo(const std::string& path) {
   const Stopwatch watch;
   const Cloud cloud = io::readCloud(path);
   const double seconds = watch.seconds();
+  const io::FileCrs crs = io::crsOf(path);
   printWarnings(cloud.warnings);
+  printWarnings(crs.warnings);
   const Box3 box = boundingBox(cloud);
   const Eigen::Vector3d low = cloud.origin + box.min.cast<double>();
   const Eigen::Vector3d high = cloud.origin + box.max.cast<double>();
   const Eigen::Vector3d size = high - low;
   fmt::print("points     {}\n", cloud.size());
-  fmt::print("left out   {} (NaN, infinite or far from the others)\n", cloud.dropped_points);
+  fmt::print("left out   {} (NaN, infinite, far from the others or withheld)\n",
+             cloud.dropped_points);
+  if (!cloud.fields.empty()) fmt::print("fields     {}\n", cloud.fields);
   fmt::print("colours    {}\n", cloud.hasColour() ? "yes" : "no");
-  fmt::print("x          {:.3f} to {:.3f} m\n", low.x(), high.x());
-  fmt::print("y          {:.3f} to {:.3f} m\n", low.y(), high.y());
-  fmt::print("z          {:.3f} to {:.3f} m\n", low.z(), high.z());
-  fmt::print("extent     {:.2f} x {:.2f} x {:.2f} m\n", size.x(), size.y(), size.z());
+  printCrs(crs);
+  const bool metres = isMetric(crs);
+  const char* const unit = metres ? " m" : "";
+  fmt::print("x          {:.3f} to {:.3f}{}\n", low.x(), high.x(), unit);
+  fmt::print("y          {:.3f} to {:.3f}{}\n", low.y(), high.y(), unit);
+  fmt::print("z          {:.3f} to {:.3f}{}\n", low.z(), high.z(), unit);
+  fmt::print("extent     {:.2f} x {:.2f} x {:.2f}{}\n", size.x(), size.y(), size.z(), unit);
   const double area = size.x() * size.y();
-  if (area > 0.0) {
+  if (area > 0.0 && metres) {
     fmt::print("density    {:.0f} points per m2 of the bounding box\n",
                static_cast<double>(cloud.size()) / area);
   }
@@ -42,7 +70,7 @@ ExitCode runInfo(const std::string& path) {
 CommandSlot addInfoCommand(CLI::App& app, const Globals&) {
   auto path = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("info", "Say what is in a cloud");
-  command->add_option("CLOUD", *path, "PLY or PCD")->required();
+  command->add_option("CLOUD", *path, "LAS, LAZ, PLY or PCD")->required();
   return {command, [path] { return runInfo(*path); }};
 }
 

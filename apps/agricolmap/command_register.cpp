@@ -7,9 +7,7 @@
 #include "agricolmap/config/json.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/angles.hpp"
-#include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/cloud/cloud_reader.hpp"
-#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/path_file.hpp"
@@ -18,14 +16,14 @@
 #include "agricolmap/report/json/registration_json.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 #include "common.hpp"
+#include "pair_files.hpp"
 #include "register_options.hpp"
 
 namespace agricolmap {
 namespace {
 
 struct RegisterArguments {
-  std::string fixed;
-  std::string moving;
+  PairFiles files;
   std::string output;
   std::string prior;
   std::string path;
@@ -35,26 +33,13 @@ struct RegisterArguments {
   RegisterOptions options;
 };
 
-struct LoadedPair {
-  Cloud fixed;
-  Cloud moving;
-};
-
-LoadedPair load(const RegisterArguments& arguments) {
-  LoadedPair pair;
-  // Two files, two cores: the disk cache feeds both.
-  parallelFor(2, [&](std::size_t i) {
-    (i == 0 ? pair.fixed : pair.moving) =
-        io::readCloud(i == 0 ? arguments.fixed : arguments.moving);
-  });
-  return pair;
-}
-
 void printSummary(const pipeline::Registration& result, const std::string& directory) {
   fmt::print("{}\n", toString(result.verdict.status));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
-  if (result.verdict.status == verdict::Status::kAmbiguous) {
-    fmt::print("  (the guess: --prior, --prior-sigma)\n");
+  if (!result.verdict.remedies.empty()) {
+    fmt::print(
+        "what may help (the guess: --prior; how good it is: --prior-sigma, --scale-unknown)\n");
+    for (const std::string& remedy : result.verdict.remedies) fmt::print("  {}\n", remedy);
   }
   if (result.transform) {
     const pipeline::Transform& transform = *result.transform;
@@ -96,6 +81,14 @@ report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments,
   return info;
 }
 
+/// Where the registration puts points of the moving file. Both must outlive it.
+io::PointMove moveOf(const pipeline::Registration& result, const Cloud& moving) {
+  const Eigen::Affine3d& fixed_from_moving = result.transform->fixed_from_moving;
+  if (!result.bent()) return fixed_from_moving;
+  return {fixed_from_moving, [displacement = pipeline::Displacement(result, moving)](
+                                 const Eigen::Vector3d& point) { return displacement.at(point); }};
+}
+
 /// Fills `output` with everything but the report.
 std::vector<std::string> writeResults(const RegisterArguments& arguments,
                                       const pipeline::RegistrationOptions& options,
@@ -105,18 +98,18 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
                                          arguments.keep_rejected);
   if (keep) {
     monitor.run(Stage::kWrite, [&] {
-      io::writeMatrix(output.path("transform.txt"), result.transform->fixed_from_moving);
-      if (result.bent()) {
-        io::writePly(output.path("aligned.ply"), pipeline::alignedCloud(result, pair.moving));
-      } else {
-        io::writePly(output.path("aligned.ply"), pair.moving, result.transform->fixed_from_moving);
-      }
+      const Eigen::Affine3d& fixed_from_moving = result.transform->fixed_from_moving;
+      io::writeMatrix(output.path("transform.txt"), fixed_from_moving, transformComment(pair));
+      const auto warning = writeAligned(arguments.files, pair, moveOf(result, pair.moving), output);
+      if (!warning) return;
+      monitor.warn(*warning);
+      printWarnings({*warning});
     });
   }
   if (arguments.no_pictures) return {};
   return monitor.run(Stage::kPictures, [&] {
     return report::writePictures(output.folder(), result,
-                                 {arguments.fixed, arguments.moving, options.evidence});
+                                 {arguments.files.fixed, arguments.files.moving, options.evidence});
   });
 }
 
@@ -127,9 +120,10 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
     std::cout << config::dumpYaml(table);
     return ExitCode::kOk;
   }
-  if (arguments.fixed.empty() || arguments.moving.empty() || arguments.output.empty()) {
+  if (arguments.files.fixed.empty() || arguments.files.moving.empty() || arguments.output.empty()) {
     throw UsageError("register needs FIXED, MOVING and -o DIR; see agricolmap register --help");
   }
+  arguments.files.check();
   requirePictures(arguments.no_pictures);
   // First of all, so that the work does not end at a folder that cannot be written.
   io::StagedOutput output(arguments.output, globals.overwrite);
@@ -137,8 +131,10 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   Monitor monitor(globals.stop, [&](Stage stage) { progress.step(nameOf(stage)); });
   report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
   info.seed = static_cast<std::uint64_t>(options.seed);
-  info.prior = initialGuess(arguments.fixed, arguments.moving, arguments.prior, info.prior_source);
-  const LoadedPair pair = monitor.run(Stage::kRead, [&] { return load(arguments); });
+  info.prior = initialGuess(arguments.files.fixed, arguments.files.moving, arguments.prior,
+                            info.prior_source);
+  const LoadedPair pair = monitor.run(Stage::kRead, [&] { return loadPair(arguments.files); });
+  for (const std::string& warning : pair.frame.warnings) monitor.warn(warning);
   printWarnings(pair.fixed.warnings);
   printWarnings(pair.moving.warnings);
   const std::vector<Eigen::Vector3d> path =
@@ -151,7 +147,8 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
                                 monitor, info);
   throwIfInterrupted();
   std::vector<std::string> stale = report::pictureNames();
-  stale.insert(stale.end(), {"transform.txt", "aligned.ply"});
+  stale.emplace_back("transform.txt");
+  for (const std::string& name : alignedNames()) stale.push_back(name);
   output.commit(stale);
   if (!globals.quiet) printSummary(result, arguments.output);
   switch (result.verdict.status) {
@@ -171,8 +168,7 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   auto arguments = std::make_shared<RegisterArguments>();
   CLI::App* command = app.add_subcommand(
       "register", "Find the transformation that lays MOVING (UGV) into FIXED (UAV)");
-  command->add_option("FIXED", arguments->fixed, "The wide map: PLY or PCD");
-  command->add_option("MOVING", arguments->moving, "The map to be moved: PLY or PCD");
+  arguments->files.addTo(*command);
   command->add_option("-o,--output", arguments->output, "Folder for the results");
   command->add_option("--prior", arguments->prior,
                       "Initial guess: 4x4 text, row-major, moving -> fixed file coordinates. "
@@ -184,7 +180,7 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");
   command->add_flag("--keep-rejected", arguments->keep_rejected,
-                    "Write transform.txt and aligned.ply of a rejected registration, too");
+                    "Write transform.txt and the aligned cloud of a rejected registration, too");
   command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG pictures");
   arguments->options.addTo(*command);
   return {command, [arguments, &globals] { return runRegister(*arguments, globals); }};

@@ -37,6 +37,7 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals);
 CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addControlPointsCommand(CLI::App& app, const Globals& globals);
+CommandSlot addConvertCommand(CLI::App& app, const Globals& globals);
 CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);

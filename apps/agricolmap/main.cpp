@@ -22,7 +22,8 @@ namespace {
 constexpr const char* kFooter =
     "Exit codes: 0 done, registration accepted; 1 internal error; 2 bad usage; 3 bad input;\n"
     "4 output cannot be written; 10 registration rejected; 11 ambiguous; 130 interrupted.\n"
-    "Lengths are metres, clouds are PLY or PCD, transforms map MOVING to FIXED file coordinates.";
+    "Lengths are metres, clouds are LAS, LAZ, PLY or PCD, transforms map MOVING to FIXED file "
+    "coordinates.";
 
 void setUpLogging(const Globals& globals) {
   spdlog::set_default_logger(spdlog::stderr_color_st("agricolmap"));
@@ -51,8 +52,8 @@ ExitCode run(int argc, char** argv) {
   const std::vector<CommandSlot> commands = {
       addRegisterCommand(app, globals), addSimulateCommand(app, globals),
       addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
-      addImportCommand(app, globals),   addInfoCommand(app, globals),
-      addDocumentCommand(app, globals)};
+      addConvertCommand(app, globals),  addImportCommand(app, globals),
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;

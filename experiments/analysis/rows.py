@@ -12,8 +12,9 @@ FLAGS = ("negative", "accepted", "right", "right_in_plane")
 # Empty where there is no such number.
 NUMBERS = (
     "setting", "guess_scale", "guess_translation", "guess_heading",
-    "rms", "rms_horizontal", "rms_vertical", "worst", "rms_to_best_affine", "e_t", "e_r", "e_s",
-    "probability", "plane_probability", "place_probability", "uniqueness", "significance", "decoy",
+    "rms", "rms_horizontal", "rms_vertical", "aligned_rms",
+    "aligned_rms_horizontal", "best_affine_rms", "worst", "rms_to_best_affine", "e_t", "e_r", "e_s",
+    "bend_gain", "slips", "slip_place", "places_covered", "probability", "plane_probability", "place_probability", "uniqueness", "significance", "decoy",
     "agreeing", "blocks", "expected_rms", "systematic_rms", "local_rms", "height_deviation",
     "overlap", "block_rms", "correlation", "attempts", "pose_mahalanobis2", "centre_mahalanobis2", "height_mahalanobis2",
     "matches", "matches_right", "matches_coherent", "rematches", "rematches_right",
@@ -23,7 +24,8 @@ COLUMNS = TEXTS + WHOLE + FLAGS + NUMBERS
 # time, reading included, which `cpu_s` then covers, too; its memory, and that before it read.
 EARLIER = ("in_process", "wall_s", "peak_mib", "idle_mib")
 # Rows that documents quote may be older than these.
-LATER = ("place_probability", "decoy", "systematic_rms")
+LATER = ("place_probability", "decoy", "systematic_rms", "aligned_rms", "aligned_rms_horizontal",
+         "best_affine_rms", "bend_gain", "slips", "slip_place", "places_covered")
 KEY = ["suite", "settings", "case_name", "seed", "setting", "guess_scale", "method"]
 STATUSES = ("accepted", "rejected", "ambiguous", "failed", "skipped")
 

@@ -39,6 +39,11 @@ struct MethodOutcome {
   /// Numbers that the method tells of its answer, by their column in rows.csv (runner/row.hpp).
   std::vector<std::pair<std::string, double>> facts;
   std::optional<StatedError> stated;  ///< how wrong it says that it may be
+  /// Where it lays the moving cloud point by point, fixed file, if not by the transform alone.
+  std::optional<Cloud> aligned;
+  /// Of a point of the moving file then: covariance of where it lies in the plane [m²].
+  std::function<Eigen::Matrix2d(const Eigen::Vector3d&)> place_covariance;
+  std::vector<Eigen::Vector3d> slips;  ///< where it says that the odometry slipped, fixed file [m]
 };
 
 /// What whoever runs a method must know of it.

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string_view>
 
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "experiments/methods/peer_maps.hpp"
 
 namespace agricolmap::experiments {
@@ -72,6 +74,12 @@ void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
                         {"overlap", placed.overlap},
                         {"block_rms", blockRms(evidence)},
                         {"correlation", placed.correlation}});
+  if (placed.followed) {
+    outcome.facts.insert(
+        outcome.facts.end(),
+        {{"bend_gain", placed.followed->bend.gain},
+         {"slips", static_cast<double>(placed.followed->bend.deformation.slips.size())}});
+  }
   if (!placed.uncertainty) return;
   outcome.facts.insert(outcome.facts.end(),
                        {{"expected_rms", placed.uncertainty->expected_rms},
@@ -79,6 +87,21 @@ void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
                         {"local_rms", placed.uncertainty->local_rms},
                         {"height_deviation", placed.uncertainty->height_deviation}});
   outcome.stated = StatedError{*placed.uncertainty, result.maps.frames.levelled_from_fixed};
+}
+
+/// Where the points come to lie, and how sure that is. Outlives `result`.
+void addDeformation(const pipeline::Registration& result, const Cloud& moving,
+                    MethodOutcome& outcome) {
+  outcome.aligned = pipeline::alignedCloud(result, moving);
+  const pipeline::Displacement displacement(result, moving);
+  for (const deform::Slip& slip : result.placed->followed->bend.deformation.slips) {
+    outcome.slips.push_back(displacement.place(displacement.pathPoint(slip.along)));
+  }
+  auto kept = std::make_shared<const pipeline::Registration>(result);
+  auto from = std::make_shared<const pipeline::Displacement>(*kept, moving);
+  outcome.place_covariance = [kept, from](const Eigen::Vector3d& point) {
+    return Eigen::Matrix2d(from->covarianceAt(point).topLeftCorner<2, 2>());
+  };
 }
 
 }  // namespace
@@ -93,6 +116,7 @@ void fillFrom(const pipeline::Registration& result, const MethodInput& input,
   if (result.transform) {
     outcome.fixed_from_moving = result.transform->fixed_from_moving;
     addEvidence(result, outcome);
+    if (result.placed->followed) addDeformation(result, input.moving, outcome);
   }
   const pipeline::Located& found = trace.located;
   if (!found.flow) return;

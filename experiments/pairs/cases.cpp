@@ -89,7 +89,8 @@ std::string Case::text() const {
                         dates->end_for_end);
   }
   if (slip) {
-    text += fmt::format("{} {} {} {}\n", slip->metres, slip->share, slip->along, first_strip);
+    text += fmt::format("{} {} {} {}{}\n", slip->metres, slip->share, slip->along, first_strip,
+                        slip->twice ? " twice" : "");
   }
   text += folder;
   return text;

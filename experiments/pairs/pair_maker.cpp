@@ -144,8 +144,11 @@ Pair PairMaker::make(const Case& chosen, int seed) {
   fly(chosen, seed, options);
   if (field_) {
     simulate::SimulatedStrip made = field_->strip(options, strip);
-    if (chosen.slip) displacePart(made, *chosen.slip, options);
-    return fromStrip(std::move(made), {field_, &field_->uav()});
+    std::vector<Eigen::Vector3d> slips;
+    if (chosen.slip) slips = displacePart(made, *chosen.slip, options);
+    Pair pair = fromStrip(std::move(made), {field_, &field_->uav()});
+    pair.slips = std::move(slips);
+    return pair;
   }
   return fromStrip(ortho_->strip(options, strip), {ortho_, &ortho_->uav()});
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
@@ -21,6 +22,7 @@ struct Pair {
   Eigen::Affine3d guess;  ///< moving file → fixed file
   evaluate::Truth truth;
   bool overlaps = true;
+  std::vector<Eigen::Vector3d> slips;  ///< where the odometry slipped, fixed file [m]
 };
 
 class PairMaker {

@@ -53,6 +53,7 @@ const std::vector<Entry>& entries() {
     add("slips", slipCases, 1, 5001, 0);
     add("long", longCases, 3, 60000, 3000);
     add("terrain", terrainCases, 6, 60000, 3000);
+    add("bends", bendCases, 1, 7001, 0);
     add("other-generator", otherGeneratorCases, 4, 1001, 1000);  // as its script's
     return made;
   }();

@@ -60,6 +60,8 @@ std::vector<Case> curvesCases(const SuiteOptions& options);
 std::vector<Case> dateCases(const SuiteOptions& options);
 std::vector<Case> mirroredDateCases(const SuiteOptions& options);
 std::vector<Case> slipCases(const SuiteOptions& options);
+/// Strips that drift has bent, of 10 and 20 m, and some that slipped twice; of all settings.
+std::vector<Case> bendCases(const SuiteOptions& options);
 std::vector<Case> otherGeneratorCases(const SuiteOptions& options);
 std::vector<Case> elsewhereCases(const SuiteOptions& options);  ///< of all settings
 std::vector<Case> longCases(const SuiteOptions& options);       ///< of all settings

@@ -47,18 +47,32 @@ struct Row {
   /// accepted; rejected or ambiguous (a transform that the method does not stand by); failed (no
   /// transform); skipped (not run: cannot be right, see `message`).
   std::string status;
-  bool accepted = false;        ///< the method stands by its transform
-  bool right = false;           ///< within the paper's limits: RMS and e_t 5 cm, e_r 0.1, e_s 0.025
+  bool accepted = false;  ///< the method stands by its transform
+  /// Within the paper's limits: RMS and e_t 5 cm, e_r 0.1, e_s 0.025; where a deformation is
+  /// followed, the points within 5 cm RMS.
+  bool right = false;
   bool right_in_plane = false;  ///< horizontal RMS within 5 cm, whatever the height
   // Errors of the transform; empty without one.
   double rms = kNotKnown;  ///< displacement over the moving points, drift included [m]
   double rms_horizontal = kNotKnown;
   double rms_vertical = kNotKnown;
+  /// Of the points as they are laid: by transform and deformation, or by the transform alone.
+  double aligned_rms = kNotKnown;             ///< heights included [m]
+  double aligned_rms_horizontal = kNotKnown;  ///< [m]
+  /// What the best affine of all points leaves, heights included [m]: drift and slips.
+  double best_affine_rms = kNotKnown;
   double worst = kNotKnown;               ///< largest displacement of a point [m]
   double rms_to_best_affine = kNotKnown;  ///< horizontal, without what no affine can follow [m]
   double e_t = kNotKnown;                 ///< the paper's errors: translation [m],
   double e_r = kNotKnown;                 ///< rotation [rad],
   double e_s = kNotKnown;                 ///< norm of those of the two scales
+
+  // What the product followed beside the transform; empty where nothing.
+  double bend_gain = kNotKnown;   ///< by which left-out blocks confirm it [standard errors]
+  double slips = kNotKnown;       ///< of which so many are slips
+  double slip_place = kNotKnown;  ///< from a true slip to the nearest found, of the worst [m]
+  /// Share of places within the 90 % ellipse that is stated for each.
+  double places_covered = kNotKnown;
 
   // What the product states of its answer; empty for peers.
   double probability = kNotKnown;        ///< of being right (RMS within 5 cm)

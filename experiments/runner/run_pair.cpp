@@ -2,11 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <ctime>
+#include <limits>
 #include <utility>
+
+#include "agricolmap/core/affine_fit.hpp"
 
 namespace agricolmap::experiments {
 namespace {
+
+/// Places of a strip at which its stated error is compared with the true one.
+constexpr std::size_t kPlaces = 2000;
+/// Squared Mahalanobis distance that nine of ten keep within in the plane.
+constexpr double kNinetyPercent = 4.605;
 
 /// "accepted", "ambiguous", "rejected", or "failed" without a transform.
 std::string statusOf(const MethodOutcome& outcome) {
@@ -44,6 +55,7 @@ PairRuns::PairRuns(Pair pair, int seed)
       guess_(pair.guess),
       overlaps_(pair.overlaps),
       seed_(seed),
+      slips_(std::move(pair.slips)),
       unscaled_{std::move(pair.moving), std::move(pair.truth)} {}
 
 const PairRuns::Moving& PairRuns::movingFor(const AddedError* error) {
@@ -83,6 +95,35 @@ void PairRuns::run(const Method& method, const Start& start, Row& row) {
   fillErrors(outcome, moving, row);
 }
 
+void PairRuns::fillDeformation(const MethodOutcome& outcome, const Moving& moving, Row& row) const {
+  const evaluate::RegistrationErrors errors =
+      evaluate::evaluateAligned(*outcome.aligned, moving.truth, moving.cloud);
+  const evaluate::SuccessLimits limits;
+  row.aligned_rms = errors.rms;
+  row.aligned_rms_horizontal = errors.rms_horizontal;
+  row.right = overlaps_ && errors.rms <= limits.rms;
+  row.right_in_plane = overlaps_ && errors.rms_horizontal <= limits.rms;
+  for (const Eigen::Vector3d& slip : slips_) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& found : outcome.slips) {
+      nearest = std::min(nearest, (found - slip).head<2>().norm());
+    }
+    row.slip_place = std::isnan(row.slip_place) ? nearest : std::max(row.slip_place, nearest);
+  }
+  if (!std::isfinite(row.slip_place)) row.slip_place = kNotKnown;
+  if (moving.truth.points.empty()) return;
+  const std::size_t step = std::max<std::size_t>(1, moving.cloud.size() / kPlaces);
+  double within = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < moving.cloud.size(); i += step) {
+    const Eigen::Vector2d error =
+        (outcome.aligned->filePoint(i) - moving.truth.points[i]).head<2>();
+    const Eigen::Matrix2d covariance = outcome.place_covariance(moving.cloud.filePoint(i));
+    within += error.dot(covariance.ldlt().solve(error)) <= kNinetyPercent ? 1.0 : 0.0;
+    count += 1.0;
+  }
+  row.places_covered = within / count;
+}
+
 void PairRuns::fillErrors(const MethodOutcome& outcome, const Moving& moving, Row& row) const {
   row.status = statusOf(outcome);
   row.accepted = row.status == "accepted";
@@ -96,6 +137,13 @@ void PairRuns::fillErrors(const MethodOutcome& outcome, const Moving& moving, Ro
   const evaluate::SuccessLimits limits;
   row.right = overlaps_ && errors.within(limits);
   row.right_in_plane = overlaps_ && errors.rms_horizontal <= limits.rms;
+  row.aligned_rms = errors.rms;
+  row.aligned_rms_horizontal = errors.rms_horizontal;
+  if (!moving.truth.points.empty()) {
+    const Eigen::Affine3d best = fitAffine(moving.cloud, moving.truth.points);
+    row.best_affine_rms = evaluate::evaluateTransform(best, moving.truth, moving.cloud).rms;
+  }
+  if (outcome.aligned) fillDeformation(outcome, moving, row);
   if (!outcome.stated) return;
   if (const auto coverage = coverageOf(*outcome.fixed_from_moving, *outcome.stated, *fixed_,
                                        moving.cloud, moving.truth)) {

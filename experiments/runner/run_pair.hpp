@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "experiments/methods/method.hpp"
 #include "experiments/pairs/guess.hpp"
@@ -35,12 +36,14 @@ class PairRuns {
   /// The moving cloud with the error's scale.
   const Moving& movingFor(const AddedError* error);
   Eigen::Affine3d guessFor(const Start& start) const;
+  void fillDeformation(const MethodOutcome& outcome, const Moving& moving, Row& row) const;
   void fillErrors(const MethodOutcome& outcome, const Moving& moving, Row& row) const;
 
   std::shared_ptr<const Cloud> fixed_;
   Eigen::Affine3d guess_;
   bool overlaps_;
   int seed_;
+  std::vector<Eigen::Vector3d> slips_;
   Moving unscaled_;
   std::map<double, Moving> scaled_;  ///< by the scale error
 };

@@ -18,6 +18,15 @@ struct Rgb {
   bool operator==(const Rgb&) const = default;
 };
 
+/// What coordinates mean on the Earth. Empty where nobody said.
+struct Crs {
+  std::string name;  ///< "WGS 84 / UTM zone 32N"
+  std::string wkt;   ///< its whole definition, OGC WKT
+  /// Metres per unit along x and y, and along z, as the file has them; clouds are in metres.
+  double horizontal_unit = 1.0;
+  double vertical_unit = 1.0;
+};
+
 /// Points in metres. A point's coordinates in its file are `origin + xyz[i]`.
 /// `rgb` is empty (no colours) or as long as `xyz`. All points are finite.
 struct Cloud {
@@ -27,6 +36,8 @@ struct Cloud {
   std::vector<Rgb> rgb;                              ///< sensor colours, 0–255
   std::size_t dropped_points = 0;                    ///< left out on reading: not finite or far off
   std::vector<std::string> warnings;                 ///< what its reader found odd, file named
+  Crs crs;                                           ///< of the coordinates as they stand here
+  std::string fields;                                ///< "x, y, z, intensity": what its file has
 
   std::size_t size() const { return xyz.size(); }
   bool empty() const { return xyz.empty(); }

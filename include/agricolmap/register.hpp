@@ -32,4 +32,8 @@ AGRICOLMAP_EXPORT Registration registerClouds(const Cloud& fixed, const Cloud& m
                                               const Options& options = Options(),
                                               const Control& control = {});
 
+/// The moving cloud where a registration lays it, in the fixed file's coordinates: transformation
+/// and deformation. Throws UsageError for a registration without a transformation.
+AGRICOLMAP_EXPORT Cloud alignedCloud(const Cloud& moving, const Registration& registration);
+
 }  // namespace agricolmap

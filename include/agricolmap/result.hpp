@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,6 +44,32 @@ struct Registration {
     double height_deviation_m = 0.0;
   };
 
+  /// How the moving cloud is bent beside the transformation: drift and slips of the odometry along
+  /// its path. Only what parts of the cloud confirm that took no part in finding it.
+  struct Deformation {
+    /// A place of the path.
+    struct Node {
+      double along_m = 0.0;                                      ///< path length
+      Eigen::Vector3d place_m = Eigen::Vector3d::Zero();         ///< fixed file coordinates
+      Eigen::Vector3d displacement_m = Eigen::Vector3d::Zero();  ///< fixed file's axes
+      Eigen::Vector3d deviation_m = Eigen::Vector3d::Zero();     ///< of the place, per axis
+    };
+    /// All that lies behind is displaced against all before.
+    struct Slip {
+      double along_m = 0.0;
+      Eigen::Vector3d place_m = Eigen::Vector3d::Zero();   ///< fixed file coordinates
+      Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< fixed file's axes
+      double deviation_m = 0.0;                            ///< of the offset, per axis
+    };
+    std::vector<Node> nodes;  ///< in order along the path
+    std::vector<Slip> slips;
+    double gain = 0.0;   ///< by which left-out parts confirm it, in standard errors
+    double rms_m = 0.0;  ///< of the displacements in the plane
+    /// Displacement of a point of the moving file, along the fixed file's axes [m]: it lies at
+    /// fixed_from_moving * point + displacement(point). Any thread may call it.
+    std::function<Eigen::Vector3d(const Eigen::Vector3d&)> displacement;
+  };
+
   /// What speaks for it, measured on the clouds themselves.
   struct Evidence {
     double significance = 0.0;  ///< the peak over the deviation of the score
@@ -67,15 +94,17 @@ struct Registration {
   bool accepted() const { return status == Status::kAccepted; }
 
   Status status = Status::kRejected;
-  std::vector<std::string> reasons;  ///< why, in plain words; never empty
-  double probability = 0.0;          ///< that the result is within 5 cm RMS
-  double plane_probability = 0.0;    ///< that it is so in the plane, whatever the height
-  double place_probability = 0.0;    ///< calibrated, that it is the right place, however exact
+  std::vector<std::string> reasons;   ///< why, in plain words; never empty
+  std::vector<std::string> remedies;  ///< what may help where it is not accepted
+  double probability = 0.0;           ///< that the result is within 5 cm RMS
+  double plane_probability = 0.0;     ///< that it is so in the plane, whatever the height
+  double place_probability = 0.0;     ///< calibrated, that it is the right place, however exact
 
   /// Moving file → fixed file coordinates [m]. A rejected registration may have one, too: the best
   /// that was found. Nothing: no place at all.
   std::optional<Transform> fixed_from_moving;
   std::optional<Parts> parts;              ///< as long as there is a transformation
+  std::optional<Deformation> deformation;  ///< on top of the transformation; nothing: none
   std::optional<Uncertainty> uncertainty;  ///< nothing where too few blocks can be compared
   Evidence evidence;
   std::vector<Alternative> alternatives;  ///< of an ambiguous one, most significant first

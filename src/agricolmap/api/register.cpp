@@ -16,6 +16,7 @@
 #include "agricolmap/core/monitor.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/processor.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/report/json/registration_json.hpp"
 #include "agricolmap/version.hpp"
@@ -90,10 +91,36 @@ Registration::Evidence evidenceOf(const pipeline::Placed& placed) {
   return evidence;
 }
 
+/// `record` keeps what the displacement is computed from.
+Registration::Deformation deformationOf(const Cloud& moving,
+                                        std::shared_ptr<const Registration::Record> record) {
+  const pipeline::Displacement inside(record->found, moving);
+  const deform::Bend& bend = record->found.placed->followed->bend;
+  Registration::Deformation deformation;
+  deformation.gain = bend.gain;
+  deformation.rms_m = bend.rms;
+  for (int i = 1; i + 1 < bend.deformation.basis().size(); ++i) {
+    const double along = bend.deformation.basis().place(i);
+    const Eigen::Vector3d point = inside.pathPoint(along);
+    deformation.nodes.push_back({along, inside.place(point), inside.at(point),
+                                 inside.covarianceAt(point).diagonal().cwiseSqrt()});
+  }
+  for (const deform::Slip& slip : bend.deformation.slips) {
+    const Eigen::Vector3d offset(slip.offset.x(), slip.offset.y(), 0.0);
+    deformation.slips.push_back({slip.along, inside.place(inside.pathPoint(slip.along)),
+                                 inside.inFile(offset), slip.deviation});
+  }
+  deformation.displacement = [record = std::move(record), inside](const Eigen::Vector3d& point) {
+    return inside.at(point);
+  };
+  return deformation;
+}
+
 Registration publicResult(const Cloud& fixed, const pipeline::Registration& found) {
   Registration result;
   result.status = statusOf(found.verdict.status);
   result.reasons = found.verdict.reasons;
+  result.remedies = found.verdict.remedies;
   result.probability = found.verdict.probability;
   result.plane_probability = found.verdict.plane_probability;
   result.place_probability = found.verdict.place_probability;
@@ -187,7 +214,18 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
   }
   result.warnings = report::warningsOf(fixed, moving, monitor);
   result.record = std::move(record);
+  if (result.record->found.transform && result.record->found.placed->followed) {
+    result.deformation = deformationOf(moving, result.record);
+  }
   return result;
+}
+
+Cloud alignedCloud(const Cloud& moving, const Registration& registration) {
+  requireProcessor();
+  if (!registration.fixed_from_moving) {
+    throw UsageError("a registration without a transformation lays no cloud anywhere");
+  }
+  return pipeline::alignedCloud(registration.record->found, moving);
 }
 
 }  // namespace agricolmap

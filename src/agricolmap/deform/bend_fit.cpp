@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "agricolmap/deform/left_out.hpp"
 
@@ -149,7 +150,6 @@ BendFit fitBend(const StripBins& bins, const BendModel& model, const Eigen::Vect
   fit.residual = noise;
   // Against the best that does not bend, on blocks that neither has seen.
   std::vector<double> gains(static_cast<std::size_t>(blocks.count()), 0.0);
-  double whole = 0.0;
   for (int fold = 0; fold < LeftOutBlocks::kFolds; ++fold) {
     const auto in = [&](int bin) { return blocks.fold(bin) != fold; };
     const Eigen::VectorXd bent = descend(bins, model, at, fit.stiffness * fit.noise, noise, in, 2);
@@ -160,15 +160,12 @@ BendFit fitBend(const StripBins& bins, const BendModel& model, const Eigen::Vect
       if (in(bin)) continue;
       const auto b = static_cast<std::size_t>(bin);
       gains[static_cast<std::size_t>(blocks.of(bin))] += of_straight[b].cost - of_bent[b].cost;
-      whole += of_straight[b].cost;
     }
   }
   fit.gain = significanceOf(gains);
-  double sum = 0.0;
-  for (const double gain : gains) sum += gain;
-  fit.spared = whole > 0.0 ? sum / whole : 0.0;
   const std::vector<BinSums> sums = bins.sums(model.motions(at), noise);
   fit.noise = noiseOf(sums, blocks);
+  fit.evidence = std::accumulate(gains.begin(), gains.end(), 0.0) / fit.noise;
   Eigen::MatrixXd normal =
       model.equations(sums, kAll).normal / fit.noise + fit.stiffness * model.bending();
   normal.diagonal().array() += 1e-9 * (1.0 + normal.trace() / static_cast<double>(model.size()));

@@ -16,7 +16,9 @@ struct BendFit {
   double noise = 1.0;            ///< how much more blocks differ than their cells' noise says: χ²
   /// Robust cost that left-out blocks are spared by the bend, over its standard error.
   double gain = 0.0;
-  double spared = 0.0;     ///< the same, as a share of the cost
+  /// The same as a log-likelihood ratio, by how much more blocks differ than their cells' noise
+  /// says.
+  double evidence = 0.0;
   refine::Noise residual;  ///< gains and deviations at the end
 };
 

@@ -29,14 +29,12 @@ Eigen::MatrixXd bendingOf(const SplineBasis& basis, int size) {
 BendModel::BendModel(const SplineBasis& basis, std::vector<double> slips, const StripBins& bins)
     : bins_(bins), basis_(basis), slips_(std::move(slips)) {
   bending_ = bendingOf(basis, size());
-  const int jumps = 2 * static_cast<int>(slips_.size());
-  straight_ = Eigen::MatrixXd::Zero(size(), 4 + jumps);
+  straight_ = Eigen::MatrixXd::Zero(size(), 4);
   for (int i = 0; i < basis_.size(); ++i) {
     const double along = basis_.place(i) / basis_.length() - 0.5;
     straight_.block<2, 2>(2 * i, 0).setIdentity();
     straight_.block<2, 2>(2 * i, 2) = along * Eigen::Matrix2d::Identity();
   }
-  straight_.bottomRightCorner(jumps, jumps).setIdentity();
 }
 
 std::vector<BinMotion> BendModel::motions(const Eigen::VectorXd& coefficients) const {

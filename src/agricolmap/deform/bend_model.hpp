@@ -38,8 +38,7 @@ class BendModel {
   /// Integral of the squared second derivative over the path, as a quadratic form [1/m]: how much
   /// heading and speed must have wandered.
   const Eigen::MatrixXd& bending() const { return bending_; }
-  /// Columns: the coefficients of what bends nothing: shift, turn and stretch along the path, and
-  /// the slips.
+  /// Columns: the coefficients of what bends nothing: shift, turn and stretch along the path.
   const Eigen::MatrixXd& straight() const { return straight_; }
 
  private:

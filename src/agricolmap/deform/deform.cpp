@@ -11,16 +11,13 @@
 
 namespace agricolmap::deform {
 
-void listOptions(OptionTable& table, DeformOptions& options) {
-  table
-      .choice("kind", options.kind, {"none", "path"},
-              "whether a strip that drift has bent, or of which a part slipped, is followed by a "
-              "smooth displacement along its path")
-      .basic();
+void listOptions(OptionTable& table, BendOptions& options) {
   table.number("node", options.node, 0.2, 100.0, "m",
                "distance of the displacement's nodes along the path");
   table.number("min_gain", options.min_gain, 0.0, 1000.0, "standard errors",
                "by which blocks that were left out of its fit must confirm it");
+  table.number("min_evidence", options.min_evidence, 0.0, 1e6, "",
+               "or how much likelier it must make them: logarithm");
   table.number("min_rise", options.min_rise, 0.0, 10.0, "m",
                "drift of the height from which on it is followed, root mean square");
 }
@@ -31,11 +28,13 @@ namespace {
 constexpr int kCoarse = 3;
 constexpr int kFine = 2;
 constexpr double kBin = 0.12;        // along the path [m]
+constexpr double kSlipPlace = 0.06;  // what its place is good to [m]
 constexpr double kNarrowBin = 0.03;  // to place slips [m]
 constexpr int kLeastBins = 24;
 constexpr double kStartStiffness = 1e4;  // of the coarse level [m]
 constexpr std::size_t kMostSlips = 4;
 constexpr int kSlipRounds = 3;
+constexpr double kLeastClearGain = 1.0;
 constexpr double kLeastGain = 3.0;     // of the rise [standard errors]
 constexpr double kLeastLength = 2.0;   // of a strip [m]
 constexpr double kLeastOffset = 0.05;  // of a slip [m]
@@ -77,7 +76,7 @@ Fitted withFurtherSlips(const StripBins& bins, const SplineBasis& basis, Fitted 
     more.fit = fitBend(bins, next, start);
     more = refitted(bins, basis, std::move(more));
     const Eigen::Vector2d offset = more.fit.coefficients.tail<2>();
-    if (more.fit.gain <= fitted.fit.gain || offset.norm() < kLeastOffset) break;
+    if (more.fit.evidence <= fitted.fit.evidence || offset.norm() < kLeastOffset) break;
     fitted = std::move(more);
   }
   return fitted;
@@ -188,7 +187,7 @@ void measureSize(const map::SignalMap& moving, Bend& bend) {
 }
 
 void addRise(const refine::PairSignals& signals, const refine::VerticalResult& heights,
-             const DeformOptions& options, Bend& bend) {
+             const BendOptions& options, Bend& bend) {
   const std::optional<RiseFit> rise = fitRise(signals.fixed().grid(), signals.moving().grid(),
                                               bend.pose, heights, bend.deformation);
   if (!rise || rise->gain < kLeastGain) return;
@@ -209,8 +208,10 @@ void addRise(const refine::PairSignals& signals, const refine::VerticalResult& h
 
 Bend bendOf(const Fitted& fitted, const Path& path, const SplineBasis& basis,
             const Eigen::Affine2d& pose) {
-  Bend bend{Deformation(path, pose.linear().colwise().normalized(), basis), pose, fitted.fit.gain,
-            0.0, 0.0};
+  Bend bend{.deformation = Deformation(path, pose.linear().colwise().normalized(), basis),
+            .pose = pose,
+            .gain = fitted.fit.gain,
+            .evidence = fitted.fit.evidence};
   Deformation& deformation = bend.deformation;
   for (int i = 0; i < basis.size(); ++i) {
     deformation.coefficients.row(i).head<2>() =
@@ -218,29 +219,33 @@ Bend bendOf(const Fitted& fitted, const Path& path, const SplineBasis& basis,
   }
   for (std::size_t k = 0; k < fitted.slips.size(); ++k) {
     const int at = 2 * (basis.size() + static_cast<int>(k));
-    deformation.slips.push_back(
-        {fitted.slips[k], fitted.fit.coefficients.segment<2>(at),
-         std::sqrt(0.5 * fitted.fit.covariance.block<2, 2>(at, at).trace())});
+    deformation.slips.push_back({fitted.slips[k], fitted.fit.coefficients.segment<2>(at),
+                                 std::sqrt(0.5 * fitted.fit.covariance.block<2, 2>(at, at).trace()),
+                                 kSlipPlace});
   }
   deformation.covariance = fitted.fit.covariance;
   return bend;
+}
+
+/// A bend spares all left-out blocks a little; a slip few of them much, so that their gains differ
+/// by as much as they are.
+bool confirmed(const BendFit& fit, const BendOptions& options) {
+  return fit.gain >= options.min_gain ||
+         (fit.gain >= kLeastClearGain && fit.evidence >= options.min_evidence);
 }
 
 }  // namespace
 
 std::optional<Bend> followBend(const refine::PairSignals& signals, const Eigen::Affine2d& pose,
                                const refine::VerticalResult& heights,
-                               const std::vector<PieceOffset>& pieces,
-                               const DeformOptions& options) {
+                               const std::vector<PieceOffset>& pieces, const BendOptions& options) {
   const map::SignalMap& moving = signals.moving().at(kCoarse);
   const map::StripFrame strip = map::stripFrame(moving);
   if (2.0 * strip.half_extent.x() < kLeastLength) return std::nullopt;
   const Path path = straightPath(strip);
   const SplineBasis basis(path.length(), options.node);
   const Fitted best = fitted(signals, pose, path, basis, pieces);
-  if (!best.fit.coefficients.allFinite() || !(best.fit.gain >= options.min_gain)) {
-    return std::nullopt;
-  }
+  if (!best.fit.coefficients.allFinite() || !confirmed(best.fit, options)) return std::nullopt;
   Bend bend = bendOf(best, path, basis, pose);
   moveStraightPart(moving, bend);
   measureSize(moving, bend);

@@ -15,32 +15,30 @@
 
 namespace agricolmap::deform {
 
-enum class DeformKind { kNone, kPath };
-
-struct DeformOptions {
-  DeformKind kind = DeformKind::kPath;
-  double node = 1.25;       ///< distance of the spline's nodes [m]
-  double min_gain = 2.5;    ///< by which left-out blocks must confirm it [standard errors]
+struct BendOptions {
+  double node = 1.25;           ///< distance of the spline's nodes [m]
+  double min_gain = 2.5;        ///< by which left-out blocks must confirm it [standard errors]
+  double min_evidence = 100.0;  ///< or by which log-likelihood ratio
   double min_rise = 0.008;  ///< height drift that is followed: less may be the drone map's own [m]
 };
-void listOptions(OptionTable& table, DeformOptions& options);
+void listOptions(OptionTable& table, BendOptions& options);
 
 struct Bend {
   Deformation deformation;
   /// The best affine of the bent strip, levelled moving → levelled fixed frame: the deformation has
   /// no shift, turn or stretch of its own on top of it.
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
-  double gain = 0.0;  ///< by which blocks that were left out confirm it [standard errors]
-  double rms = 0.0;   ///< of the displacement in the plane, over the seen cells [m]
-  double most = 0.0;  ///< the largest one on the path [m]
+  double gain = 0.0;      ///< by which blocks that were left out confirm it [standard errors]
+  double evidence = 0.0;  ///< and as a log-likelihood ratio
+  double rms = 0.0;       ///< of the displacement in the plane, over the seen cells [m]
+  double most = 0.0;      ///< the largest one on the path [m]
 };
 
 /// Nothing where the blocks do not confirm it, or no map tells. `pose` and `heights`: of the
 /// registration without it; `pieces`: where pieces of the strip lie beside `pose`, if any do.
 std::optional<Bend> followBend(const refine::PairSignals& signals, const Eigen::Affine2d& pose,
                                const refine::VerticalResult& heights,
-                               const std::vector<PieceOffset>& pieces,
-                               const DeformOptions& options);
+                               const std::vector<PieceOffset>& pieces, const BendOptions& options);
 
 /// How far it bends and where it slipped, in plain words.
 std::string describe(const Bend& bend);

@@ -1,5 +1,7 @@
 #include "agricolmap/deform/deformation.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace agricolmap::deform {
@@ -42,7 +44,15 @@ Eigen::Matrix2d Deformation::covarianceAt(const Eigen::Vector2d& moving) const {
     if (place.along < slips[k].along) continue;
     j.middleCols<2>(2 * (basis_.size() + static_cast<int>(k))).setIdentity();
   }
-  return j * covariance * j.transpose();
+  Eigen::Matrix2d result = j * covariance * j.transpose();
+  // Beside a slip it is not known which side of it a point is on.
+  for (const Slip& slip : slips) {
+    if (slip.place_deviation <= 0.0) continue;
+    const double u = std::abs(place.along - slip.along) / slip.place_deviation;
+    const double wrong = 0.5 * std::erfc(u / std::numbers::sqrt2);
+    result += wrong * slip.offset * slip.offset.transpose();
+  }
+  return result;
 }
 
 Eigen::Vector3d Deformation::onPath(double along) const {

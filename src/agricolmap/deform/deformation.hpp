@@ -15,6 +15,7 @@ struct Slip {
   double along = 0.0;                                ///< path length [m]
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< fixed levelled frame [m]
   double deviation = 0.0;                            ///< of the offset, per axis [m]
+  double place_deviation = 0.0;                      ///< of `along` [m]
 };
 
 /// A point of the moving map at (s along the path, t aside of it) is displaced by

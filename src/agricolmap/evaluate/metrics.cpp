@@ -41,22 +41,23 @@ Eigen::Matrix3d groundRotation(const Eigen::Matrix3d& linear) {
   return nearestRotation(upright);
 }
 
-}  // namespace
-
-RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Truth& truth,
-                                     const Cloud& moving) {
+void requireTruth(const Truth& truth, const Cloud& moving) {
   if (moving.empty()) throw InputError(fmt::format("{}: the cloud has no points", moving.name));
   if (!truth.points.empty() && truth.points.size() != moving.size()) {
     throw InputError(fmt::format("{}: has {} points, the truth has {}", moving.name, moving.size(),
                                  truth.points.size()));
   }
+}
+
+/// The part of the errors that is of points; `place(i)`: where point i was laid.
+template <typename Place>
+RegistrationErrors errorsOfPoints(const Truth& truth, const Cloud& moving, const Place& place) {
   const ErrorSums sums =
       parallelSum<ErrorSums>(moving.size(), kChunk, {}, [&](std::size_t begin, std::size_t end) {
         ErrorSums part;
         for (std::size_t i = begin; i < end; ++i) {
-          const Eigen::Vector3d point = moving.filePoint(i);
-          const Eigen::Vector3d placed = estimate * point;
-          const Eigen::Vector3d affine = truth.best_affine * point;
+          const Eigen::Vector3d placed = place(i);
+          const Eigen::Vector3d affine = truth.best_affine * moving.filePoint(i);
           const Eigen::Vector3d error = placed - (truth.points.empty() ? affine : truth.points[i]);
           part.horizontal2 += error.head<2>().squaredNorm();
           part.vertical2 += error.z() * error.z();
@@ -72,6 +73,27 @@ RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Trut
   errors.rms = std::hypot(errors.rms_horizontal, errors.rms_vertical);
   errors.rms_to_best_affine = std::sqrt(sums.affine2 / count);
   errors.worst = std::sqrt(sums.worst2);
+  return errors;
+}
+
+}  // namespace
+
+RegistrationErrors evaluateAligned(const Cloud& aligned, const Truth& truth, const Cloud& moving) {
+  requireTruth(truth, moving);
+  if (aligned.size() != moving.size()) {
+    throw InputError(
+        fmt::format("{}: has {} points, {} has {}; an aligned cloud has one per moving "
+                    "point, in the same order",
+                    aligned.name, aligned.size(), moving.name, moving.size()));
+  }
+  return errorsOfPoints(truth, moving, [&](std::size_t i) { return aligned.filePoint(i); });
+}
+
+RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Truth& truth,
+                                     const Cloud& moving) {
+  requireTruth(truth, moving);
+  RegistrationErrors errors = errorsOfPoints(
+      truth, moving, [&](std::size_t i) { return (estimate * moving.filePoint(i)).eval(); });
   const Eigen::Vector3d centre = moving.origin + meanPoint(moving);
   errors.translation = (estimate * centre - truth.best_affine * centre).norm();
   const Eigen::Matrix3d difference =

@@ -40,6 +40,10 @@ struct Truth {
   std::vector<Eigen::Vector3d> points;  ///< per moving point; empty: best_affine is exact
 };
 
+/// Errors of a cloud that was laid point by point: displacements alone, no transform's. `moving`:
+/// its points before, of the same number.
+RegistrationErrors evaluateAligned(const Cloud& aligned, const Truth& truth, const Cloud& moving);
+
 /// Errors of `estimate` (moving file → fixed file) over all moving points.
 RegistrationErrors evaluateTransform(const Eigen::Affine3d& estimate, const Truth& truth,
                                      const Cloud& moving);

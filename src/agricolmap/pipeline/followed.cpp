@@ -35,13 +35,13 @@ bool fitsAsOne(const Placed& straight, const Placed& bent) {
 void followBends(const refine::PairSignals& signals, const SearchSpace& space,
                  const Refined& refined, const RegistrationOptions& options, Monitor& monitor,
                  Placed& placed) {
-  if (options.deform.kind == deform::DeformKind::kNone || options.refine != RefineKind::kDense ||
+  if (options.deform == DeformKind::kNone || options.refine != RefineKind::kDense ||
       placed.heights.status != refine::VerticalStatus::kOk) {
     return;
   }
   std::optional<deform::Bend> bend = monitor.run(Stage::kDeform, [&] {
     return deform::followBend(signals, placed.pose, placed.heights, piecesOf(placed.evidence.parts),
-                              options.deform);
+                              options.bend);
   });
   if (!bend) return;
   Followed followed = monitor.run(Stage::kDeform, [&] {
@@ -82,21 +82,23 @@ Eigen::Vector3d Displacement::at(const Eigen::Vector3d& moving_point) const {
   return place - registration_.transform->fixed_from_moving * moving_point;
 }
 
-Eigen::Vector3d Displacement::placeOnPath(double along) const {
-  const Placed& placed = *registration_.placed;
-  const deform::Deformation& deformation = placed.followed->bend.deformation;
-  Eigen::Vector3d levelled(0.0, 0.0, 0.0);
-  levelled.head<2>() = deformation.path().point(along);
-  const Eigen::Vector3d file = levelled_from_moving_.inverse() * levelled;
-  return registration_.transform->fixed_from_moving * file + at(file);
+Eigen::Vector3d Displacement::place(const Eigen::Vector3d& moving_point) const {
+  return registration_.transform->fixed_from_moving * moving_point + at(moving_point);
 }
 
-Eigen::Matrix3d Displacement::covarianceOnPath(double along) const {
+Eigen::Vector3d Displacement::pathPoint(double along) const {
+  const deform::Path& path = registration_.placed->followed->bend.deformation.path();
+  const Eigen::Vector2d point = path.point(along);
+  return levelled_from_moving_.inverse() * Eigen::Vector3d(point.x(), point.y(), 0.0);
+}
+
+Eigen::Matrix3d Displacement::covarianceAt(const Eigen::Vector3d& moving_point) const {
   const Placed& placed = *registration_.placed;
   const deform::Deformation& deformation = placed.followed->bend.deformation;
+  const Eigen::Vector2d point = (levelled_from_moving_ * moving_point).head<2>();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  covariance.topLeftCorner<2, 2>() = verdict::placeCovariance(
-      *placed.uncertainty, deformation.covarianceAt(deformation.path().point(along)));
+  covariance.topLeftCorner<2, 2>() =
+      verdict::placeCovariance(*placed.uncertainty, deformation.covarianceAt(point));
   covariance(2, 2) =
       std::pow(placed.uncertainty->height_deviation, 2) + std::pow(deformation.height_deviation, 2);
   return file_from_levelled_ * covariance * file_from_levelled_.transpose();

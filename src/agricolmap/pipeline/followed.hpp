@@ -23,13 +23,16 @@ class Displacement {
   /// Of a point of the moving file, fixed file's axes [m]: it lies at fixed_from_moving · point +
   /// this.
   Eigen::Vector3d at(const Eigen::Vector3d& moving_point) const;
-  /// The point of the path at `along` [m], laid by transform and deformation, fixed file.
-  Eigen::Vector3d placeOnPath(double along) const;
-  /// A displacement of the levelled frame in the fixed file's axes.
+  /// Covariance of where a point of the moving file lies, what the strip's blocks may have in
+  /// common included: fixed file's axes, x y z [m²].
+  Eigen::Matrix3d covarianceAt(const Eigen::Vector3d& moving_point) const;
+  /// The point of the moving file on the path at `along` [m], at the height of the ground.
+  Eigen::Vector3d pathPoint(double along) const;
+
+  /// Where a point of the moving file lies: transform and deformation, fixed file.
+  Eigen::Vector3d place(const Eigen::Vector3d& moving_point) const;
+  /// A direction of the levelled frame in the fixed file's axes.
   Eigen::Vector3d inFile(const Eigen::Vector3d& levelled) const;
-  /// Covariance of where a point of the path lies, what the strip's blocks may have in common
-  /// included: fixed file's axes, x y z [m²].
-  Eigen::Matrix3d covarianceOnPath(double along) const;
 
  private:
   const Registration& registration_;

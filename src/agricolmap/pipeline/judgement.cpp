@@ -7,6 +7,7 @@
 
 #include "agricolmap/refine/channel_poses.hpp"
 #include "agricolmap/refine/fit.hpp"
+#include "agricolmap/verdict/remedies.hpp"
 #include "agricolmap/verdict/sides.hpp"
 #include "agricolmap/verdict/straighten.hpp"
 
@@ -113,6 +114,7 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
                            .rivals = {}};
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
+  verdict.remedies = verdict::remediesFor(verdict, finding, space, options.verdict);
   if (placed.followed) verdict.reasons.push_back(describe(placed.followed->bend));
   if (const auto apart = verdict::sidesApart(placed.evidence)) {
     verdict.reasons.push_back(fmt::format(

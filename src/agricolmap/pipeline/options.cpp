@@ -22,6 +22,11 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
       .choice("refine", options.refine, {"dense", "cpd"},
               "how the placement is refined: Gauss-Newton on the maps, or CPD on the vegetation")
       .basic();
+  table
+      .choice("deform", options.deform, {"none", "path"},
+              "whether a strip that drift has bent, or of which a part slipped, is followed by a "
+              "smooth displacement along its path")
+      .basic();
   table.integer("seed", options.seed, 0, 2147483647, "", "what everything random follows from")
       .basic();
   table.flag(
@@ -42,7 +47,7 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
   table.group("vegetation", options.vegetation, "telling plants from soil (refine = cpd)");
   table.group("cpd", options.cpd, "coherent point drift (refine = cpd)");
   table.group("vertical", options.vertical, "tilt and height");
-  table.group("deform", options.deform, "following a strip that bends or slipped (refine = dense)");
+  table.group("bend", options.bend, "following a strip that bends or slipped (deform = path)");
   table.group("evidence", options.evidence, "what the verdict rests on");
   table.group("uncertainty", options.uncertainty, "the stated error");
   table.group("verdict", options.verdict, "when a registration is accepted");
@@ -63,7 +68,7 @@ bool isDefaultChain(const RegistrationOptions& options) {
   return correlates(options) && refinesDensely(options);
 }
 bool followsBends(const RegistrationOptions& options) {
-  return options.deform.kind == deform::DeformKind::kPath;
+  return options.deform == DeformKind::kPath && options.refine == RefineKind::kDense;
 }
 bool refinesByPoints(const RegistrationOptions& options) {
   return options.refine == RefineKind::kCpd;
@@ -92,10 +97,8 @@ constexpr std::array kNeeds = {
     Need{"affine.", flows, "association = flow"},
     Need{"dense.", refinesDensely, "refine = dense"},
     Need{"straighten", refinesDensely, "refine = dense"},
-    Need{"deform.", refinesDensely, "refine = dense"},
-    Need{"deform.node", followsBends, "deform.kind = path"},
-    Need{"deform.min_gain", followsBends, "deform.kind = path"},
-    Need{"deform.min_rise", followsBends, "deform.kind = path"},
+    Need{"bend.", followsBends, "deform = path and refine = dense"},
+    Need{"deform", refinesDensely, "refine = dense"},
     Need{"vegetation.", refinesByPoints, "refine = cpd"},
     Need{"cpd.", refinesByPoints, "refine = cpd"},
     Need{"flow.vote.coarse", votesForPoses, "flow.vote.kind = pose"},

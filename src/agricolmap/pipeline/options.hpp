@@ -27,11 +27,14 @@ namespace agricolmap::pipeline {
 
 enum class AssociationKind { kCorrelation, kFlow };
 enum class RefineKind { kDense, kCpd };
+/// kPath: bends and slips are followed along the path of the strip.
+enum class DeformKind { kNone, kPath };
 
 struct RegistrationOptions {
   bool geometry_only = false;  ///< use heights alone; needed for clouds without colours
   AssociationKind association = AssociationKind::kCorrelation;
   RefineKind refine = RefineKind::kDense;
+  DeformKind deform = DeformKind::kPath;
   int seed = 1;
   bool straighten = true;  ///< lay strips that drift has bent by their blocks
   PriorUncertainty prior;
@@ -48,7 +51,7 @@ struct RegistrationOptions {
   map::VegetationOptions vegetation;
   paper::CpdOptions cpd;
   refine::VerticalOptions vertical;
-  deform::DeformOptions deform;
+  deform::BendOptions bend;
   verdict::EvidenceOptions evidence;
   verdict::UncertaintyOptions uncertainty;
   verdict::VerdictOptions verdict;

@@ -8,6 +8,7 @@
 #include "agricolmap/pipeline/long_strip.hpp"
 #include "agricolmap/pipeline/unknown_scale.hpp"
 #include "agricolmap/pipeline/usable.hpp"
+#include "agricolmap/verdict/remedies.hpp"
 
 namespace agricolmap::pipeline {
 namespace {
@@ -41,6 +42,7 @@ Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located
                    .pieces = {}};
   if (!refined.best) {
     outcome.verdict = verdict::rejectBecause(refined.failure);
+    outcome.verdict.remedies = verdict::remediesForNothing(maps.space);
     return outcome;
   }
   if (rivals) refined.rivals = *std::move(rivals);

@@ -12,9 +12,10 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
   for (const Cloud* cloud : {&fixed, &moving}) {
     if (!cloud->hasColour()) {
       throw InputError(
-          fmt::format("{}: has no colours, which Excess Green needs; it can be registered by "
+          fmt::format("{}: has no colours, which Excess Green needs{}; it can be registered by "
                       "heights alone",
-                      cloud->name),
+                      cloud->name,
+                      cloud->fields.empty() ? "" : fmt::format(" (it has {})", cloud->fields)),
           Remedy::kHeightsAlone);
     }
   }

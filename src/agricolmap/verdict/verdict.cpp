@@ -112,7 +112,7 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> against;
   if (!evidence.parts.displaced.empty()) {
-    against.push_back(describe(evidence.parts) + ": register the strip in parts");
+    against.push_back(describe(evidence.parts) + "");
   }
   if (evidence.uniqueness < std::max(kWeakUniqueness, options.min_uniqueness)) {
     against.push_back(
@@ -218,14 +218,15 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
             {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
                          "a better initial guess can",
                          rivals + 1)},
+            {},
             std::min(all, share),
             std::min(plane, share),
             std::min(place, share)};
   }
   if (apart || plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
-    return {Status::kRejected, doubts(finding, plane, options), all, plane, place};
+    return {Status::kRejected, doubts(finding, plane, options), {}, all, plane, place};
   }
-  return {Status::kAccepted, support(finding, plane, all), all, plane, place};
+  return {Status::kAccepted, support(finding, plane, all), {}, all, plane, place};
 }
 
 }  // namespace agricolmap::verdict

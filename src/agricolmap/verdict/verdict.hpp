@@ -31,10 +31,11 @@ void listOptions(OptionTable& table, VerdictOptions& options);
 
 struct Verdict {
   Status status = Status::kRejected;
-  std::vector<std::string> reasons;  ///< why, in plain words; never empty
-  double probability = 0.0;          ///< calibrated, that the result is within 5 cm RMS
-  double plane_probability = 0.0;    ///< that it is so in the plane, whatever the height
-  double place_probability = 0.0;    ///< that it is the right place, however exact
+  std::vector<std::string> reasons;   ///< why, in plain words; never empty
+  std::vector<std::string> remedies;  ///< what may help; empty when accepted
+  double probability = 0.0;           ///< calibrated, that the result is within 5 cm RMS
+  double plane_probability = 0.0;     ///< that it is so in the plane, whatever the height
+  double place_probability = 0.0;     ///< that it is the right place, however exact
 };
 
 /// What is judged.

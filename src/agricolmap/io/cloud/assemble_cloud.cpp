@@ -17,8 +17,6 @@ namespace {
 
 /// Nothing on Earth has larger projected coordinates; beyond are uninitialised values.
 constexpr double kMaxCoordinate = 1e8;
-/// No field is so large: what lies farther from the origin is a placeholder or a mismatch [m].
-constexpr double kMaxFromOrigin = 2e4;
 /// A first point that is nearer than this to the middle is one of the cloud's [m].
 constexpr double kOfTheCloud = 1e3;
 /// Points that the middle is taken from, about, and the most chunks that they are looked for in.
@@ -27,6 +25,28 @@ constexpr std::size_t kSampledChunks = 8;  // spread over the file: decoding all
 constexpr std::size_t kEnoughSamples = 100;
 /// From here on 32-bit floats are coarser than 0.8 cm.
 constexpr double kFarForFloat = 1e5;
+
+/// The points of another source, brought into other coordinates.
+class MappedSource : public PointSource {
+ public:
+  MappedSource(const PointSource& source, const CoordinateMap& map) : source_(source), map_(map) {}
+  std::size_t points() const override { return source_.points(); }
+  std::size_t chunks() const override { return source_.chunks(); }
+  std::size_t firstPoint(std::size_t chunk) const override { return source_.firstPoint(chunk); }
+  ColourKind colourKind() const override { return source_.colourKind(); }
+  bool floatCoordinates() const override { return source_.floatCoordinates(); }
+  void decode(std::size_t chunk, const Sink& sink) const override {
+    source_.decode(chunk, [&](const PointBlock& block) {
+      PointBlock mapped = block;
+      map_.apply(mapped.xyz[0].data(), mapped.xyz[1].data(), mapped.xyz[2].data(), block.count);
+      sink(mapped);
+    });
+  }
+
+ private:
+  const PointSource& source_;
+  const CoordinateMap& map_;
+};
 
 bool isWide(ColourKind kind) {
   return kind == ColourKind::kWideInteger || kind == ColourKind::kWideFloat;
@@ -170,31 +190,40 @@ void resizeInHugePages(std::vector<T>& values, std::size_t size) {
   values.resize(size);
 }
 
+/// Points of one chunk, or of all.
+struct Tally {
+  std::size_t kept = 0;
+  std::size_t far = 0;  ///< that tell a place, but one too far from the origin
+  std::size_t withheld = 0;
+
+  Tally& operator+=(const Tally& other) {
+    kept += other.kept;
+    far += other.far;
+    withheld += other.withheld;
+    return *this;
+  }
+};
+
 /// Closes the gaps that dropped points left at the ends of chunks.
-void compact(const PointSource& source, const std::vector<std::size_t>& kept, Cloud& cloud) {
+void compact(const PointSource& source, const std::vector<Tally>& tallies, Cloud& cloud) {
   std::size_t next = 0;
-  for (std::size_t chunk = 0; chunk < kept.size(); ++chunk) {
+  for (std::size_t chunk = 0; chunk < tallies.size(); ++chunk) {
+    const std::size_t kept = tallies[chunk].kept;
     if (next == source.firstPoint(chunk)) {
-      next += kept[chunk];
+      next += kept;
       continue;
     }
     const auto from = static_cast<std::ptrdiff_t>(source.firstPoint(chunk));
-    const auto count = static_cast<std::ptrdiff_t>(kept[chunk]);
+    const auto count = static_cast<std::ptrdiff_t>(kept);
     const auto to = static_cast<std::ptrdiff_t>(next);
     std::copy_n(cloud.xyz.begin() + from, count, cloud.xyz.begin() + to);
     if (cloud.hasColour()) std::copy_n(cloud.rgb.begin() + from, count, cloud.rgb.begin() + to);
-    next += kept[chunk];
+    next += kept;
   }
   cloud.dropped_points = cloud.xyz.size() - next;
   cloud.xyz.resize(next);
   if (cloud.hasColour()) cloud.rgb.resize(next);
 }
-
-/// Points of one chunk, or of all.
-struct Tally {
-  std::size_t kept = 0;
-  std::size_t far = 0;  ///< that tell a place, but one too far from the origin
-};
 
 /// Decodes a chunk to where its points belong when none before them is dropped.
 Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_scale, Cloud& cloud) {
@@ -202,6 +231,7 @@ Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_sca
   const std::size_t first = source.firstPoint(chunk);
   Tally tally;
   source.decode(chunk, [&](const PointBlock& block) {
+    tally.withheld += block.withheld;
     for (std::size_t i = 0; i < block.count; ++i) {
       const Eigen::Vector3d point = pointOf(block, i);
       const Eigen::Vector3d local = point - cloud.origin;
@@ -222,26 +252,36 @@ Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_sca
   return tally;
 }
 
-void checkDropped(const PointSource& source, std::size_t far, Cloud& cloud) {
-  if (far > cloud.size()) {
+void checkDropped(const PointSource& source, const Tally& tally, Cloud& cloud) {
+  if (tally.far > cloud.size()) {
     throw InputError(fmt::format(
         "{}: {} of its {} points lie more than {:.0f} km from its middle, too far for a field; "
         "check the units (coordinates must be metres)",
-        cloud.name, far, source.points(), kMaxFromOrigin / 1000.0));
+        cloud.name, tally.far, source.points(), kMaxFromOrigin / 1000.0));
   }
   if (cloud.empty()) {
     throw InputError(
-        fmt::format("{}: none of its {} points is finite", cloud.name, source.points()));
+        tally.withheld > 0
+            ? fmt::format("{}: {} of its {} points are marked as withheld, and none "
+                          "of the others is finite",
+                          cloud.name, tally.withheld, source.points())
+            : fmt::format("{}: none of its {} points is finite", cloud.name, source.points()));
   }
-  if (cloud.dropped_points == 0) return;
+  if (tally.withheld > 0) {
+    cloud.warnings.push_back(
+        fmt::format("{}: {} points were left out: marked as withheld", cloud.name, tally.withheld));
+  }
+  const std::size_t unusable = cloud.dropped_points - tally.withheld;
+  if (unusable == 0) return;
   cloud.warnings.push_back(fmt::format(
       "{}: {} points were left out: NaN, infinite or more than {:.0f} km from the others",
-      cloud.name, cloud.dropped_points, kMaxFromOrigin / 1000.0));
+      cloud.name, unusable, kMaxFromOrigin / 1000.0));
 }
 
 }  // namespace
 
-Cloud assembleCloud(const PointSource& source, const std::string& name) {
+Cloud assembleCloud(const PointSource& source, const std::string& name, const CoordinateMap* map) {
+  if (map != nullptr) return assembleCloud(MappedSource(source, *map), name);
   Cloud cloud;
   cloud.name = name;
   cloud.origin = chooseOrigin(source);
@@ -250,15 +290,15 @@ Cloud assembleCloud(const PointSource& source, const std::string& name) {
   const float scale = isWide(kind) ? colourScale(source, cloud) : 1.0F;
   resizeInHugePages(cloud.xyz, source.points());
   if (kind != ColourKind::kNone) resizeInHugePages(cloud.rgb, source.points());
-  std::vector<std::size_t> kept(source.chunks(), 0);
-  std::vector<std::size_t> far(source.chunks(), 0);
+  std::vector<Tally> tallies(source.chunks());
   parallelFor(source.chunks(), [&](std::size_t chunk) {
-    const Tally tally = decodeChunk(source, chunk, scale, cloud);
-    kept[chunk] = tally.kept;
-    far[chunk] = tally.far;
+    tallies[chunk] = decodeChunk(source, chunk, scale, cloud);
   });
-  compact(source, kept, cloud);
-  checkDropped(source, std::accumulate(far.begin(), far.end(), std::size_t{0}), cloud);
+  compact(source, tallies, cloud);
+  checkDropped(source,
+               std::accumulate(tallies.begin(), tallies.end(), Tally{},
+                               [](Tally sum, const Tally& part) { return sum += part; }),
+               cloud);
   return cloud;
 }
 

@@ -1,41 +1,19 @@
 // Damaged files must give an InputError or a cloud, never anything else.
 #include <lzf.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <vector>
 
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
-#include "agricolmap/io/test_support.hpp"
+#include "agricolmap/io/fuzz_test_support.hpp"
 
 namespace agricolmap::io {
 namespace {
 
 using test::append;
-
-/// A file in memory: rewriting one on disk thousands of times waits for the disk.
-class MemoryFile {
- public:
-  MemoryFile() : fd_(::memfd_create("cloud", MFD_CLOEXEC)) {
-    if (fd_ < 0) throw OutputError("no file in memory");
-  }
-  ~MemoryFile() { ::close(fd_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  std::filesystem::path write(const std::string& content) const {
-    const auto size = static_cast<ssize_t>(content.size());
-    if (::ftruncate(fd_, 0) != 0 || ::pwrite(fd_, content.data(), content.size(), 0) != size) {
-      throw OutputError("no space in memory");
-    }
-    return "/proc/self/fd/" + std::to_string(fd_);
-  }
-
- private:
-  int fd_;
-};
+using test::damage;
+using test::MemoryFile;
 
 std::vector<std::string> validFiles() {
   std::vector<std::string> files;
@@ -82,22 +60,6 @@ std::vector<std::string> validFiles() {
   return files;
 }
 
-std::string damage(std::string file, Random& random) {
-  const std::uint64_t kind = random.below(3);
-  if (kind == 0) return file.substr(0, random.below(file.size()));
-  const std::size_t header = std::min<std::size_t>(file.size(), 260);
-  const std::uint64_t changes = 1 + random.below(4);
-  for (std::uint64_t i = 0; i < changes; ++i) {
-    const std::size_t at = random.below(random.chance(0.7) ? header : file.size());
-    if (kind == 1) {
-      file[at] = static_cast<char>(random.below(256));
-    } else {
-      file.insert(at, 1, "0123456789 -\n"[random.below(13)]);
-    }
-  }
-  return file;
-}
-
 TEST(CloudFuzz, DamagedFilesAreReadOrRefused) {
   const MemoryFile memory;
   Random random(11);
@@ -106,7 +68,7 @@ TEST(CloudFuzz, DamagedFilesAreReadOrRefused) {
   for (const std::string& file : validFiles()) {
     ASSERT_EQ(readCloud(memory.write(file)).size(), 20U);
     for (int i = 0; i < 1500; ++i) {
-      const auto path = memory.write(damage(file, random));
+      const auto path = memory.write(damage(file, 260, random));
       try {
         const Cloud cloud = readCloud(path);
         ++read;

@@ -1,5 +1,5 @@
-// Reading point clouds: PLY (ascii, binary of either byte order) and PCD 0.7 (ascii, binary,
-// binary_compressed), told apart by content.
+// Reading point clouds: PLY (ascii, binary of either byte order), PCD 0.7 (ascii, binary,
+// binary_compressed) and LAS 1.0 to 1.5 with LAZ and COPC, told apart by content.
 //
 // Coordinates x, y, z may have any numeric type. Colours are `red green blue`, `r g b` or
 // `diffuse_red …` in PLY, also packed `rgb`/`rgba` in PCD; 8 bit, 16 bit (÷257 unless no value

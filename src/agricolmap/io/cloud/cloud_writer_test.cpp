@@ -38,6 +38,42 @@ TEST(CloudWriter, RoundTripsUtmCoordinates) {
   EXPECT_LT(worst, 4e-6);  // float spacing at 40 m
 }
 
+/// Coordinates to the step of the format, colours exactly; through every format and back.
+TEST(CloudWriter, AllFormatsRoundTripInUtm) {
+  const TempDir dir;
+  Cloud cloud = randomCloud(70000, {500000, 5400000, 300});
+  cloud.crs = {"somewhere", "PROJCS[\"somewhere\"]"};
+  for (const CloudFormat format :
+       {CloudFormat::kPly, CloudFormat::kPcd, CloudFormat::kLas, CloudFormat::kLaz}) {
+#ifndef AGRICOLMAP_HAS_LASZIP
+    if (format == CloudFormat::kLaz) continue;
+#endif
+    SCOPED_TRACE(endingOf(format));
+    const auto path = dir / ("out." + endingOf(format));
+    writeCloud(path, cloud, format);
+    EXPECT_EQ(formatByContent(test::contentOf(path)), format);
+    EXPECT_EQ(formatByEnding(path), format);
+    const Cloud back = readCloud(path);
+    EXPECT_TRUE(back.warnings.empty());
+    EXPECT_EQ(back.rgb, cloud.rgb);
+    ASSERT_EQ(back.size(), cloud.size());
+    const bool las = format == CloudFormat::kLas || format == CloudFormat::kLaz;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Eigen::Vector3d error = back.filePoint(i) - cloud.filePoint(i);
+      ASSERT_LT(error.cwiseAbs().maxCoeff(), las ? 0.000505 : 4e-6);
+    }
+  }
+}
+
+TEST(CloudWriter, FormatsAreKnownByTheirEndings) {
+  EXPECT_EQ(formatByEnding("a/b.LAZ"), CloudFormat::kLaz);
+  EXPECT_EQ(formatByEnding("b.copc.laz"), CloudFormat::kLaz);
+  EXPECT_EQ(formatByEnding("laz"), std::nullopt);
+  EXPECT_EQ(formatByEnding("b.e57"), std::nullopt);
+  EXPECT_EQ(formatByContent("LASF"), CloudFormat::kLas);
+  EXPECT_EQ(formatByContent("nothing"), std::nullopt);
+}
+
 TEST(CloudWriter, AppliesTheTransformInDouble) {
   const TempDir dir;
   const Cloud cloud = randomCloud(1000, {500000, 5000000, 300});

@@ -296,7 +296,7 @@ std::vector<std::byte> decompress(const Header& header, std::span<const std::byt
 }
 
 Cloud readAscii(const Header& header, const Roles& roles, std::string_view text,
-                const std::string& name) {
+                const std::string& name, const CoordinateMap* map) {
   using Use = AsciiColumn::Use;
   const auto use_of = [&](std::size_t field) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -320,23 +320,21 @@ Cloud readAscii(const Header& header, const Roles& roles, std::string_view text,
     layout.colour = colourKindOf({type(0), type(1), type(2)});
   }
   const AsciiSource source(std::move(layout));
-  Cloud cloud = assembleCloud(source, name);
+  Cloud cloud = assembleCloud(source, name, map);
   warnOfRest(source.extraLines(), "lines", cloud);
   return cloud;
 }
 
-}  // namespace
-
-Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
-  const Header header = Parser(file.text(), name).parse();
-  const Roles roles = findRoles(header, name, options);
+Cloud readPoints(const Header& header, const Roles& roles, const MappedFile& file,
+                 const std::string& name, const CoordinateMap* map) {
   const std::span<const std::byte> data = file.bytes().subspan(header.bytes);
   switch (header.encoding) {
     case Encoding::kAscii:
-      return readAscii(header, roles, file.text().substr(header.bytes), name);
+      return readAscii(header, roles, file.text().substr(header.bytes), name, map);
     case Encoding::kBinary: {
       const std::uint64_t used = checkedBytes(header, data.size(), name);
-      Cloud cloud = assembleCloud(BinarySource(columnsOf(header, roles, data.data(), true)), name);
+      Cloud cloud =
+          assembleCloud(BinarySource(columnsOf(header, roles, data.data(), true)), name, map);
       warnOfRest(data.size() - used, "bytes", cloud);
       return cloud;
     }
@@ -345,8 +343,20 @@ Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions
   }
   std::size_t rest = 0;
   const std::vector<std::byte> plain = decompress(header, data, name, rest);
-  Cloud cloud = assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name);
+  Cloud cloud =
+      assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name, map);
   warnOfRest(rest, "bytes", cloud);
+  return cloud;
+}
+
+}  // namespace
+
+Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+  const Header header = Parser(file.text(), name).parse();
+  Cloud cloud = readPoints(header, findRoles(header, name, options), file, name, options.map);
+  std::vector<std::string> names;
+  for (const Field& field : header.fields) names.push_back(field.name);
+  cloud.fields = fieldList(names);
   return cloud;
 }
 

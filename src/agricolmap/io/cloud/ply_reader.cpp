@@ -230,7 +230,8 @@ std::span<const std::byte> skipTo(const PlyHeader& header, const PlyElement& ver
 }
 
 Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
-                 std::span<const std::byte> data, const std::string& name) {
+                 std::span<const std::byte> data, const std::string& name,
+                 const CoordinateMap* map) {
   const bool swap = header.format == PlyFormat::kBigEndian;
   data = skipTo(header, *layout.vertex, data, swap, name);
   const PlyElement& vertex = *layout.vertex;
@@ -244,12 +245,12 @@ Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
   }
   if (vertex.hasLists()) {
     const ListedSource source(layout, data, swap, name);
-    Cloud cloud = assembleCloud(source, name);
+    Cloud cloud = assembleCloud(source, name, map);
     const auto rest = static_cast<std::size_t>(data.data() + data.size() - source.end());
     if (isLast(header, vertex)) warnOfRest(rest, "bytes", cloud);
     return cloud;
   }
-  Cloud cloud = assembleCloud(BinarySource(columnsOf(layout, data.data(), swap)), name);
+  Cloud cloud = assembleCloud(BinarySource(columnsOf(layout, data.data(), swap)), name, map);
   if (isLast(header, vertex)) warnOfRest(data.size() - vertex.count * each, "bytes", cloud);
   return cloud;
 }
@@ -270,7 +271,7 @@ std::vector<AsciiColumn> asciiColumns(const VertexLayout& layout) {
 }
 
 Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string_view text,
-                const std::string& name) {
+                const std::string& name, const CoordinateMap* map) {
   for (const PlyElement* e = header.elements.data(); e != layout.vertex; ++e) {
     for (std::uint64_t i = 0; i < e->count && !e->properties.empty(); ++i) {
       while (!text.empty() && splitWords(takeLine(text)).empty()) {
@@ -280,7 +281,7 @@ Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string
   }
   const AsciiSource source(
       {name, text, layout.vertex->count, asciiColumns(layout), layout.colourKind()});
-  Cloud cloud = assembleCloud(source, name);
+  Cloud cloud = assembleCloud(source, name, map);
   if (layout.vertex == &header.elements.back()) warnOfRest(source.extraLines(), "lines", cloud);
   return cloud;
 }
@@ -290,9 +291,13 @@ Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string
 Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
   const PlyHeader header = parsePlyHeader(file.text(), name);
   const VertexLayout layout = vertexLayout(header, name, options);
-  Cloud cloud = header.format == PlyFormat::kAscii
-                    ? readAscii(header, layout, file.text().substr(header.bytes), name)
-                    : readBinary(header, layout, file.bytes().subspan(header.bytes), name);
+  Cloud cloud =
+      header.format == PlyFormat::kAscii
+          ? readAscii(header, layout, file.text().substr(header.bytes), name, options.map)
+          : readBinary(header, layout, file.bytes().subspan(header.bytes), name, options.map);
+  std::vector<std::string> names;
+  for (const PlyProperty& property : layout.vertex->properties) names.push_back(property.name);
+  cloud.fields = fieldList(names);
   if (layout.partly_coloured) {
     cloud.warnings.push_back(fmt::format(
         "{}: its colours are incomplete (red, green and blue are needed); ignored", name));

@@ -314,7 +314,7 @@ TEST(PlyReader, CatchesLyingHeaders) {
   expectRefused("ply\n", {"format"});
   expectRefused("", {"empty"});
   expectRefused("hello", {"not a point cloud"});
-  expectRefused("LASF", {"pdal"});
+  expectRefused("LASF", {"truncated"});
   expectRefused("ply\rformat ascii 1.0\r", {"mac2unix"});
 }
 

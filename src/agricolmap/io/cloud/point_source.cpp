@@ -95,6 +95,17 @@ ColourKind colourKindOf(const std::array<ScalarType, 3>& types) {
   return kind;
 }
 
+std::string fieldList(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostBytes = 200;
+  std::string list;
+  for (const std::string& name : names) {
+    if (list.size() + name.size() > kMostBytes) return list + ", …";
+    list += list.empty() ? "" : ", ";
+    for (const char c : name) list += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return list;
+}
+
 ColourKind BinarySource::colourKind() const {
   if (columns_.packed) return ColourKind::kByte;
   if (!columns_.colour) return ColourKind::kNone;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/cloud/read_options.hpp"
 
 namespace agricolmap::io {
 
@@ -40,6 +41,7 @@ enum class ColourKind {
 struct PointBlock {
   static constexpr std::size_t kCapacity = 512;
   std::size_t count = 0;
+  std::size_t withheld = 0;  ///< points before the block's last that the file says not to use
   std::array<std::array<double, kCapacity>, 3> xyz;  ///< file coordinates [m]
   std::array<Rgb, kCapacity> rgb;                    ///< ColourKind::kByte
   std::array<std::array<float, kCapacity>, 3> wide;  ///< the wide kinds
@@ -100,12 +102,20 @@ ColourKind colourKindOf(const std::array<ScalarType, 3>& types);
 /// One stored value as a double.
 double loadScalar(const std::byte* from, ScalarType type, bool swap);
 
-/// Reads all points. The origin is the first point that says where the cloud is, rounded to whole
-/// metres, or, where that lies more than 1 km off, the median of about 1000 points spread over the
-/// file. Points with a coordinate or colour that is not finite, and those more than 20 km from the
-/// origin along an axis, are dropped and counted. Throws InputError naming `name` when no point is
-/// left, when more than half are too far off, or the colours fit no known range.
-Cloud assembleCloud(const PointSource& source, const std::string& name);
+/// No field is so large: what lies farther from the origin is a placeholder or a mismatch [m].
+inline constexpr double kMaxFromOrigin = 2e4;
+
+/// Reads all points, through `map` if there is one. The origin is the first point that says where
+/// the cloud is, rounded to whole metres, or, where that lies more than 1 km off, the median of
+/// about 1000 points spread over the file. Points with a coordinate or colour that is not finite,
+/// and those more than 20 km from the origin along an axis, are dropped and counted, as are those
+/// that are withheld. Throws InputError naming `name` when no point is left, when more than half
+/// are too far off, or the colours fit no known range.
+Cloud assembleCloud(const PointSource& source, const std::string& name,
+                    const CoordinateMap* map = nullptr);
+
+/// What a file has of each point as one text, printable and not too long.
+std::string fieldList(const std::vector<std::string>& names);
 
 /// Adds a warning to the cloud where `count` bytes or lines (`unit`) follow its last point.
 void warnOfRest(std::size_t count, std::string_view unit, Cloud& cloud);

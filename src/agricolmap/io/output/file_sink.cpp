@@ -33,11 +33,25 @@ void FileSink::write(std::span<const std::byte> bytes) {
       if (errno == EINTR) continue;
       fail("cannot be written");
     }
+    size_ += static_cast<std::size_t>(written);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
 }
 
 void FileSink::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+void FileSink::rewrite(std::size_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      fail(errno == ESPIPE ? "is a pipe, which this format cannot be written to"
+                           : "cannot be written");
+    }
+    offset += static_cast<std::size_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
 
 void FileSink::close() {
   const int fd = std::exchange(fd_, -1);

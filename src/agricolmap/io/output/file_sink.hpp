@@ -20,6 +20,10 @@ class FileSink {
 
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
+  /// Bytes written so far.
+  std::size_t size() const { return size_; }
+  /// Replaces bytes that were written before.
+  void rewrite(std::size_t offset, std::span<const std::byte> bytes);
   /// Closes; call it before relying on the file: some file systems report a full disk only here.
   void close();
 
@@ -27,6 +31,7 @@ class FileSink {
   [[noreturn]] void fail(std::string_view what) const;
   OutputPath path_;
   int fd_ = -1;
+  std::size_t size_ = 0;
 };
 
 /// Writes a whole file.

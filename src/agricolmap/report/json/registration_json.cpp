@@ -7,6 +7,7 @@
 
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/json/utf8.hpp"
 
@@ -47,6 +48,9 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::F
   json["dropped_points"] = cloud.dropped_points;
   json["stray_points"] = footprint.left_out;
   json["has_colour"] = cloud.hasColour();
+  json["crs"] = cloud.crs.wkt.empty()
+                    ? Json(nullptr)
+                    : Json{{"name", validUtf8(cloud.crs.name)}, {"wkt", validUtf8(cloud.crs.wkt)}};
   json["origin_m"] = vectorJson(cloud.origin);
   const Box3 box = boundingBox(cloud);
   json["box_min_m"] = vectorJson((cloud.origin + box.min.cast<double>()).eval());
@@ -199,6 +203,43 @@ Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registrat
   return json;
 }
 
+/// How the strip is bent beside the transform, at the nodes of its spline.
+Json deformationJson(const Cloud& moving, const pipeline::Registration& registration) {
+  if (!registration.transform.has_value() || !registration.placed->followed) return nullptr;
+  const deform::Bend& bend = registration.placed->followed->bend;
+  const deform::Deformation& deformation = bend.deformation;
+  const pipeline::Displacement displacement(registration, moving);
+  Json json;
+  json["length_m"] = number(deformation.path().length());
+  json["gain"] = number(bend.gain);
+  json["evidence"] = number(bend.evidence);
+  json["rms_m"] = number(bend.rms);
+  json["most_m"] = number(bend.most);
+  Json nodes = Json::array();
+  for (int i = 1; i + 1 < deformation.basis().size(); ++i) {
+    const double along = deformation.basis().place(i);
+    const Eigen::Vector3d point = displacement.pathPoint(along);
+    nodes.push_back({{"along_m", number(along)},
+                     {"place_m", vectorJson(displacement.place(point))},
+                     {"displacement_m", vectorJson(displacement.at(point))},
+                     {"deviation_m",
+                      vectorJson(displacement.covarianceAt(point).diagonal().cwiseSqrt().eval())}});
+  }
+  json["nodes"] = std::move(nodes);
+  Json slips = Json::array();
+  for (const deform::Slip& slip : deformation.slips) {
+    const Eigen::Vector3d offset(slip.offset.x(), slip.offset.y(), 0.0);
+    slips.push_back(
+        {{"along_m", number(slip.along)},
+         {"place_m", vectorJson(displacement.place(displacement.pathPoint(slip.along)))},
+         {"offset_m", vectorJson(displacement.inFile(offset))},
+         {"deviation_m", number(slip.deviation)},
+         {"place_deviation_m", number(slip.place_deviation)}});
+  }
+  json["slips"] = std::move(slips);
+  return json;
+}
+
 Json alternativesJson(const pipeline::Registration& registration) {
   Json json = Json::array();
   for (const pipeline::Alternative& other : registration.alternatives) {
@@ -253,12 +294,14 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["format_version"] = 1;
   json["status"] = toString(registration.verdict.status);
   json["reasons"] = stringsJson(registration.verdict.reasons);
+  json["remedies"] = stringsJson(registration.verdict.remedies);
   json["warnings"] = stringsJson(warningsOf(fixed, moving, monitor));
   json["probability"] = number(registration.verdict.probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
   json["place_probability"] = number(registration.verdict.place_probability);
   json["transform"] = transformJson(fixed, moving, registration);
   json["uncertainty"] = uncertaintyJson(fixed, registration);
+  json["deformation"] = deformationJson(moving, registration);
   json["alternatives"] = alternativesJson(registration);
   json["prior"] = {{"matrix", matrixJson(info.prior.matrix())},
                    {"source", validUtf8(info.prior_source)}};

@@ -21,12 +21,18 @@ constexpr std::array<const char*, 2> kInsetNames = {"A", "B"};
 
 class OverlayPainter {
  public:
-  OverlayPainter(PictureCanvas& canvas, const Scene& scene, const Eigen::Affine2d& pose)
-      : canvas_(canvas), scene_(scene), pose_(pose), moving_from_fixed_(pose.inverse()) {}
+  /// `strip`: the moving map, or what it is without the deformation that is followed.
+  OverlayPainter(PictureCanvas& canvas, const Scene& scene, const MapLayer& strip,
+                 const Eigen::Affine2d& pose)
+      : canvas_(canvas),
+        scene_(scene),
+        strip_(strip),
+        pose_(pose),
+        moving_from_fixed_(pose.inverse()) {}
 
   void paint(const View& view) {
     LayerRow fixed(scene_.fixed, Eigen::Affine2d::Identity(), view);
-    LayerRow moving(scene_.moving, moving_from_fixed_, view);
+    LayerRow moving(strip_, moving_from_fixed_, view);
     canvas_.paint(view.rect, [&](int y, std::uint32_t* out) {
       fixed.sample(y);
       moving.sample(y);
@@ -108,6 +114,7 @@ class OverlayPainter {
  private:
   PictureCanvas& canvas_;
   const Scene& scene_;
+  const MapLayer& strip_;
   Eigen::Affine2d pose_;
   Eigen::Affine2d moving_from_fixed_;
 };
@@ -145,7 +152,8 @@ void writeOverlayPicture(const io::OutputPath& path, const Scene& scene, bool af
             after ? "After: the moving map where the registration puts it"
                   : "Before: the moving map where the initial guess puts it",
             subtitle(scene, after), scene.registration.verdict, after);
-  OverlayPainter painter(page.canvas, scene, pose);
+  const MapLayer& strip = after && scene.straight ? *scene.straight : scene.moving;
+  OverlayPainter painter(page.canvas, scene, strip, pose);
   const int top = page.top;
   if (wide) {
     painter.drawStrip({kMargin, top, kInnerWidth, strip_height});

@@ -10,6 +10,8 @@ void writeMapsPicture(const io::OutputPath& path, const Scene& scene);
 void writeFlowPicture(const io::OutputPath& path, const Scene& scene);
 /// `after` shows the moving map where the registration puts it, else where the guess does.
 void writeOverlayPicture(const io::OutputPath& path, const Scene& scene, bool after);
+/// Of a registration that follows a deformation.
+void writeDeformationPicture(const io::OutputPath& path, const Scene& scene);
 void writeBlocksPicture(const io::OutputPath& path, const Scene& scene);
 
 }  // namespace agricolmap::report

@@ -10,22 +10,31 @@
 namespace agricolmap::report {
 namespace {
 
+enum class Needs { kNothing, kTransform, kDeformation };
+
 struct Kind {
   const char* name;
-  bool needs_transform;
+  Needs needs;
   void (*write)(const io::OutputPath& path, const Scene& scene);
 };
 
 /// Those that take longest first, so that the last to finish is a quick one.
-constexpr std::array<Kind, 5> kKinds = {{
-    {"overlay_before.png", true,
+constexpr std::array<Kind, 6> kKinds = {{
+    {"overlay_before.png", Needs::kTransform,
      [](const auto& p, const Scene& s) { writeOverlayPicture(p, s, false); }},
-    {"overlay_after.png", true,
+    {"overlay_after.png", Needs::kTransform,
      [](const auto& p, const Scene& s) { writeOverlayPicture(p, s, true); }},
-    {"exg_maps.png", false, writeMapsPicture},
-    {"flow.png", false, writeFlowPicture},
-    {"blocks.png", true, writeBlocksPicture},
+    {"exg_maps.png", Needs::kNothing, writeMapsPicture},
+    {"flow.png", Needs::kNothing, writeFlowPicture},
+    {"blocks.png", Needs::kTransform, writeBlocksPicture},
+    {"deformation.png", Needs::kDeformation, writeDeformationPicture},
 }};
+
+bool has(const pipeline::Registration& registration, Needs needs) {
+  if (needs == Needs::kNothing) return true;
+  if (!registration.transform.has_value()) return false;
+  return needs == Needs::kTransform || registration.placed->followed.has_value();
+}
 
 }  // namespace
 
@@ -43,7 +52,7 @@ std::vector<std::string> writePictures(const io::OutputPath& dir,
   const Scene scene(registration, info);
   std::vector<const Kind*> chosen;
   for (const Kind& kind : kKinds) {
-    if (registration.transform.has_value() || !kind.needs_transform) chosen.push_back(&kind);
+    if (has(registration, kind.needs)) chosen.push_back(&kind);
   }
   parallelFor(chosen.size(),
               [&](std::size_t i) { chosen[i]->write(dir / chosen[i]->name, scene); });

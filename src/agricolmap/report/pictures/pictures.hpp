@@ -27,7 +27,8 @@ std::vector<std::string> pictureNames();
 ///  - exg_maps.png: the two maps' Excess Green (heights for clouds without colours),
 ///  - flow.png: where the guess puts the moving map, where the registration does, and the matches,
 ///  - overlay_before.png, overlay_after.png: both maps in complementary colours,
-///  - blocks.png: what the blocks of the moving map say when placed alone.
+///  - blocks.png: what the blocks of the moving map say when placed alone,
+///  - deformation.png: how the strip is bent, where a deformation is followed.
 /// Without a transform only the first two. Throws OutputError.
 std::vector<std::string> writePictures(const io::OutputPath& dir,
                                        const pipeline::Registration& registration,

@@ -137,6 +137,11 @@ Eigen::Vector2d insetBetween(const GroundRect& strip, const LayerLevel& level,
   return best;
 }
 
+std::optional<MapLayer> straightLayer(const pipeline::Registration& result, PictureValue value) {
+  if (!result.placed || !result.placed->followed) return std::nullopt;
+  return std::optional<MapLayer>(std::in_place, result.placed->followed->straight, value);
+}
+
 }  // namespace
 
 Scene::Scene(const pipeline::Registration& result, const PictureInfo& picture_info)
@@ -145,6 +150,7 @@ Scene::Scene(const pipeline::Registration& result, const PictureInfo& picture_in
       value(valueToDraw(result)),
       fixed(result.maps.fixed, value),
       moving(result.maps.moving, value),
+      straight(straightLayer(result, value)),
       fixed_range(rangeOf(fixed, value)),
       moving_range(rangeOf(moving, value)),
       outline(outlineOf(moving.level(kCoarseCell))),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "agricolmap/pipeline/registration.hpp"
@@ -32,6 +33,8 @@ class Scene {
   PictureValue value;  ///< heights for clouds without colours
   MapLayer fixed;
   MapLayer moving;
+  /// The moving map without the deformation that is followed, where one is.
+  std::optional<MapLayer> straight;
   /// Soil is 0 and vegetation 1, each by its own map: cameras differ.
   ValueRange fixed_range;
   ValueRange moving_range;

@@ -183,7 +183,7 @@ void writePairPicture(const io::OutputPath& path, const Cloud& fixed, const Clou
   Page page(height, info.title,
             fmt::format("{}; {}", describeCloud(info.fixed_name, fixed, fixed_photo),
                         describeCloud(info.moving_name, moving, moving_photo)),
-            {verdict::Status::kAccepted, {}}, false);
+            {verdict::Status::kAccepted, {}, {}}, false);
   const Layout layout = layoutOf(fixed_photo, moving_photo, page.top, info.same_field);
   drawPanels(page.canvas, layout, fixed_photo, moving_photo, info);
   drawFooter(page.canvas, info.same_field);

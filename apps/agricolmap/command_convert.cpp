@@ -1,0 +1,165 @@
+// agricolmap convert IN OUT, and import ORTHO.tif DSM.tif -o OUT, which is a case of it
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/crs/crs.hpp"
+#include "agricolmap/io/las/las_copy.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/raster/raster_import.hpp"
+#include "agricolmap/io/text/mapped_file.hpp"
+#include "common.hpp"
+#include "option_flags.hpp"
+
+namespace agricolmap {
+namespace {
+
+struct ConvertArguments {
+  std::vector<std::string> files;  ///< one or two to read, the last to write
+  std::string output;              ///< import: instead of the last
+  std::string crs;
+  std::string to_crs;
+  OptionFlags flags;
+};
+
+io::CloudFormat formatToWrite(const std::string& path) {
+  if (const auto format = io::formatByEnding(path)) return *format;
+  throw UsageError(
+      fmt::format("{}: its ending tells no format; known are .ply, .pcd, .las and .laz", path));
+}
+
+bool isLas(io::CloudFormat format) {
+  return format == io::CloudFormat::kLas || format == io::CloudFormat::kLaz;
+}
+
+struct Written {
+  std::uint64_t points = 0;
+  std::uint64_t left_out = 0;
+};
+
+/// From LAS to LAS point by point, with all that they have.
+Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudFormat format,
+                const io::CommonFrame* frame) {
+  std::optional<io::LasMove> move;
+  if (frame != nullptr) {
+    // Read for its origin alone: what is far from the others is left out as it is there.
+    const Cloud cloud = io::readCloud(from, {false, frame->moving.get()});
+    move.emplace();
+    move->map = frame->moving.get();
+    move->origin = cloud.origin;
+    move->crs = frame->crs;
+  }
+  const io::LasCopied copied = io::copyLas(from, to, format == io::CloudFormat::kLaz, move);
+  return {copied.points, copied.left_out};
+}
+
+Written convertCloud(const ConvertArguments& arguments, const io::OutputPath& to,
+                     io::CloudFormat format) {
+  const std::string& from = arguments.files.front();
+  const io::FileCrs crs = io::crsOf(from, arguments.crs);
+  std::optional<io::CommonFrame> frame;
+  if (!arguments.to_crs.empty()) frame = io::frameIn(crs, arguments.to_crs);
+  printWarnings(frame ? frame->warnings : crs.warnings);
+  const auto source = io::formatByContent(io::MappedFile(from).text());
+  const bool said_anew = !arguments.crs.empty() && !frame;
+  if (source && isLas(*source) && isLas(format) && !said_anew) {
+    return copyLas(from, to, format, frame ? &*frame : nullptr);
+  }
+  if (!frame && crs.crs && !io::isProjected(*crs.crs)) {
+    throw InputError(fmt::format(
+        "{}: its coordinates are degrees ({}), which are kept from LAS to LAS alone; bring them "
+        "into a projected system (--to-crs EPSG:326<zone>: UTM north; 327<zone> south)",
+        from, crs.crs->name));
+  }
+  Cloud cloud = io::readCloud(from, {true, frame ? frame->moving.get() : nullptr});
+  printWarnings(cloud.warnings);
+  if (frame) cloud.crs = frame->crs;
+  if (!frame && crs.crs) cloud.crs = *crs.crs;
+  if (!isLas(format) && !cloud.crs.wkt.empty()) {
+    printWarnings(
+        {fmt::format("{}: {} has no place for the coordinate system, {}; say it where "
+                     "the file is used",
+                     to.shown(), io::endingOf(format), cloud.crs.name)});
+  }
+  io::writeCloud(to, cloud, format);
+  return {cloud.size(), cloud.dropped_points};
+}
+
+Written convertRasters(const ConvertArguments& arguments, const io::OutputPath& to,
+                       io::CloudFormat format) {
+  io::ImportOptions options;
+  arguments.flags.apply(optionTable(options));
+  const Cloud cloud = io::importOrthoDsm(arguments.files[0], arguments.files[1], options);
+  printWarnings(cloud.warnings);
+  io::writeCloud(to, cloud, format);
+  return {cloud.size(), cloud.dropped_points};
+}
+
+ExitCode runConvert(ConvertArguments arguments, const Globals& globals) {
+  if (arguments.output.empty()) {
+    arguments.output = arguments.files.back();
+    arguments.files.pop_back();
+  }
+  const bool rasters = arguments.files.size() == 2;
+  if (!rasters && !arguments.flags.given().empty()) {
+    throw UsageError(fmt::format("{} would do nothing: it needs ORTHO.tif and DSM.tif",
+                                 flagOf(arguments.flags.given().front())));
+  }
+  if (rasters && !(arguments.crs.empty() && arguments.to_crs.empty())) {
+    throw UsageError("--crs and --to-crs are for clouds; rasters say their coordinate system");
+  }
+  const io::CloudFormat format = formatToWrite(arguments.output);
+  io::StagedFile output(arguments.output, globals.overwrite);
+  Progress progress(globals);
+  progress.step(rasters ? "import" : "convert");
+  const Written written = rasters ? convertRasters(arguments, output.path(), format)
+                                  : convertCloud(arguments, output.path(), format);
+  output.commit();
+  if (!globals.quiet) {
+    fmt::print("{}: {} points, {} {}\n", arguments.output, written.points, written.left_out,
+               rasters ? "pixels without a height left out" : "left out");
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+CommandSlot addConvertCommand(CLI::App& app, const Globals& globals) {
+  auto arguments = std::make_shared<ConvertArguments>();
+  CLI::App* command = app.add_subcommand(
+      "convert", "Write a cloud, or an orthomosaic with its surface model, in another format");
+  command
+      ->add_option("FILES", arguments->files,
+                   "IN OUT, or ORTHO.tif DSM.tif OUT; OUT ends in .ply, .pcd, .las or .laz")
+      ->required()
+      ->expected(2, 3);
+  command->add_option("--crs", arguments->crs,
+                      "Coordinate system of IN: EPSG:32632, WKT or a file with it, instead of what "
+                      "it says");
+  command->add_option("--to-crs", arguments->to_crs,
+                      "Coordinate system to bring coordinates into, in metres");
+  io::ImportOptions defaults;
+  arguments->flags.addTo(*command, optionTable(defaults), "Options for rasters");
+  return {command, [arguments, &globals] { return runConvert(*arguments, globals); }};
+}
+
+CommandSlot addImportCommand(CLI::App& app, const Globals& globals) {
+  auto arguments = std::make_shared<ConvertArguments>();
+  arguments->files.resize(2);
+  CLI::App* command = app.add_subcommand(
+      "import", "Make a cloud from an orthomosaic and a surface model (OpenDroneMap, Pix4D)");
+  command->add_option("ORTHO", arguments->files[0], "Orthomosaic: GeoTIFF in projected metres")
+      ->required();
+  command->add_option("DSM", arguments->files[1], "Surface model: GeoTIFF, same coordinate system")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "PLY, PCD, LAS or LAZ to write")
+      ->required();
+  io::ImportOptions defaults;
+  arguments->flags.addTo(*command, optionTable(defaults), "Options of the import");
+  return {command, [arguments, &globals] { return runConvert(*arguments, globals); }};
+}
+
+}  // namespace agricolmap

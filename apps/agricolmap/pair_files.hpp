@@ -1,0 +1,52 @@
+// The two files of a registration: read into one frame, and the moving one written where it
+// belongs.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/cloud/cloud_format.hpp"
+#include "agricolmap/io/cloud/point_move.hpp"
+#include "agricolmap/io/crs/crs.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
+
+namespace agricolmap {
+
+struct PairFiles {
+  std::string fixed;
+  std::string moving;
+  std::string fixed_crs;  ///< as the user says; empty: as the files do
+  std::string moving_crs;
+  std::string aligned = "auto";  ///< format of the aligned cloud
+
+  void addTo(CLI::App& command);
+  /// Throws UsageError for a format that there is none of.
+  void check() const;
+};
+
+/// Both clouds in the coordinate system that they have in common, in metres.
+struct LoadedPair {
+  Cloud fixed;
+  Cloud moving;
+  io::CommonFrame frame;
+  io::CloudFormat aligned = io::CloudFormat::kPly;
+};
+LoadedPair loadPair(const PairFiles& files);
+
+/// "aligned.ply", for every format.
+std::vector<std::string> alignedNames();
+
+/// Writes the moving cloud, moved: from LAS to LAS or LAZ point by point with all attributes, else
+/// its coordinates and colours. What the caller should know is returned.
+std::optional<std::string> writeAligned(const PairFiles& files, const LoadedPair& pair,
+                                        const io::PointMove& fixed_from_moving,
+                                        const io::StagedOutput& output);
+
+/// What transform.txt says of itself; empty where nothing is known.
+std::string transformComment(const LoadedPair& pair);
+
+}  // namespace agricolmap

@@ -1,0 +1,148 @@
+// Strips of a field of plants that are bent and slipped by a known amount.
+#include "agricolmap/deform/deform.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/map/test_scene.hpp"
+
+namespace agricolmap::deform {
+namespace {
+
+using Offset = std::function<Eigen::Vector2d(double)>;
+using testing::TestField;
+using testing::TestScene;
+
+constexpr double kLength = 8.0;
+const testing::TestError kError{{0.3, -0.2}, 0.03, 1.02, 0.98};
+const TestField kField{.size = 13.0, .other_leaves = 0.2};
+
+refine::VerticalResult flat() {
+  refine::VerticalResult heights;
+  heights.status = refine::VerticalStatus::kOk;
+  return heights;
+}
+
+/// A strip from west to east whose cells truly lie `offset(x)` beside where the pose puts them, x
+/// from its western end [m].
+struct BentScene {
+  explicit BentScene(const Offset& offset) : scene(testing::testScene(kField, kError, kLength)) {
+    const testing::Truth truth = testing::growField(kField);
+    const GridFrame& frame = scene.moving.frame;
+    const map::Box2 window(frame.corner,
+                           frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows));
+    constexpr int kBand = 5;  // cells
+    for (int first = 0; first < frame.cols; first += kBand) {
+      const Eigen::Vector2d beside = offset((first + 0.5 * kBand) * frame.cell);
+      const map::GridMap view =
+          testing::viewOf(truth, kField, window, testing::shifted(scene.pose, beside), 0.05, 12);
+      for (int r = 0; r < frame.rows; ++r) {
+        for (int c = first; c < std::min(first + kBand, frame.cols); ++c) {
+          scene.moving.weight(r, c) = view.weight(r, c);
+          scene.moving.exg(r, c) = view.exg(r, c);
+          scene.moving.height(r, c) = view.height(r, c);
+          scene.moving.colour(r, c) = view.colour(r, c);
+        }
+      }
+    }
+  }
+  std::optional<Bend> follow(const std::vector<PieceOffset>& pieces = {},
+                             const BendOptions& options = {}) const {
+    const correlation::MapSignals fixed(scene.fixed, {});
+    const correlation::MapSignals moving(scene.moving, {});
+    const refine::PairSignals signals(fixed, moving, {}, {});
+    return followBend(signals, scene.pose, flat(), pieces, options);
+  }
+  /// How far the strip is off, root mean square along its middle [m].
+  double errorOf(const std::optional<Bend>& bend, const Offset& offset) const {
+    const GridFrame& frame = scene.moving.frame;
+    double sum = 0.0, count = 0.0;
+    for (double x = 0.05; x < kLength; x += 0.1) {
+      const Eigen::Vector2d p = frame.corner + Eigen::Vector2d(x, 0.5 * frame.rows * frame.cell);
+      Eigen::Vector2d lies = scene.pose * p;
+      if (bend) lies = bend->pose * p + bend->deformation.at(p).head<2>();
+      sum += (lies - (scene.pose * p + offset(x))).squaredNorm();
+      count += 1.0;
+    }
+    return std::sqrt(sum / count);
+  }
+  TestScene scene;
+};
+
+const Offset kNone = [](double) { return Eigen::Vector2d(0.0, 0.0); };
+const Offset kDrift = [](double x) {
+  return Eigen::Vector2d(0.02 * std::sin(0.9 * x), 0.05 * std::cos(0.7 * x));
+};
+const Offset kSlipped = [](double x) { return Eigen::Vector2d(0.0, x > 5.0 ? 0.3 : 0.0); };
+
+TEST(Deform, FollowsDrift) {
+  const BentScene bent(kDrift);
+  const auto bend = bent.follow();
+  ASSERT_TRUE(bend);
+  EXPECT_TRUE(bend->deformation.slips.empty());
+  const double before = bent.errorOf({}, kDrift);
+  EXPECT_LT(bent.errorOf(bend, kDrift), std::min(0.008, 0.3 * before));
+  EXPECT_NE(describe(*bend).find("bend"), std::string::npos);
+}
+
+TEST(Deform, InventsNoneWhereNothingBends) {
+  const BentScene straight(kNone);
+  const auto bend = straight.follow();
+  if (bend) {
+    EXPECT_LT(straight.errorOf(bend, kNone), 0.003);
+  }
+  EXPECT_FALSE(straight.follow({}, {.min_gain = 6.0}));
+}
+
+TEST(Deform, FollowsASlipAndTellsWhereItIs) {
+  const BentScene slipped(kSlipped);
+  std::vector<PieceOffset> pieces;
+  for (double x = 0.4; x < kLength; x += 0.8) {
+    pieces.push_back({x, x > 5.2 ? Eigen::Vector2d(0.01, 0.28) : Eigen::Vector2d(0.0, 0.01)});
+  }
+  const auto bend = slipped.follow(pieces);
+  ASSERT_TRUE(bend);
+  ASSERT_EQ(bend->deformation.slips.size(), 1U);
+  const Slip& slip = bend->deformation.slips.front();
+  EXPECT_NEAR(slip.offset.norm(), 0.3, 0.03);
+  EXPECT_NEAR(slip.along, 5.0, 0.15);
+  EXPECT_LT(slipped.errorOf(bend, kSlipped), 0.05);
+  EXPECT_NE(describe(*bend).find("slip"), std::string::npos);
+}
+
+TEST(Deform, StraightenedMapIsWhatTheStripWouldBe) {
+  const BentScene bent(kDrift);
+  const auto bend = bent.follow();
+  ASSERT_TRUE(bend);
+  const map::GridMap straight = straightened(bent.scene.moving, *bend);
+  const correlation::MapSignals fixed(bent.scene.fixed, {});
+  const correlation::MapSignals before(bent.scene.moving, {}), after(straight, {});
+  const refine::PairSignals was(fixed, before, {}, {}), is(fixed, after, {}, {});
+  EXPECT_GT(is.score().significance(bend->pose), was.score().significance(bent.scene.pose));
+}
+
+TEST(Deform, DoesNotDependOnTheNumberOfThreads) {
+  const BentScene bent(kDrift);
+  const auto many = bent.follow();
+  const ThreadLimit limit(1);
+  const auto one = bent.follow();
+  ASSERT_TRUE(many && one);
+  EXPECT_EQ(many->deformation.coefficients, one->deformation.coefficients);
+  EXPECT_EQ(many->pose.matrix(), one->pose.matrix());
+}
+
+TEST(Deformation, TurnsWhatLiesAsideOfABentPath) {
+  const Path path({{0.0, 0.0}, {10.0, 0.0}});
+  const SplineBasis basis(10.0, 1.0);
+  Deformation deformation(path, Eigen::Matrix2d::Identity(), basis);
+  for (int i = 0; i < basis.size(); ++i) deformation.coefficients(i, 1) = 0.01 * basis.place(i);
+  const Eigen::Vector3d beside = deformation.at({4.0, 1.0});
+  EXPECT_NEAR(beside.x(), -0.01, 1e-12);
+  EXPECT_NEAR(beside.y(), 0.04, 1e-12);
+}
+
+}  // namespace
+}  // namespace agricolmap::deform

@@ -1,0 +1,20 @@
+// The formats of point clouds, told apart.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace agricolmap::io {
+
+enum class CloudFormat { kPly, kPcd, kLas, kLaz };
+
+/// "ply"
+std::string endingOf(CloudFormat format);
+/// By the ending of a file's name, capitals or not; nothing where it is another.
+std::optional<CloudFormat> formatByEnding(const std::filesystem::path& path);
+/// By the bytes of a file; nothing where it is no cloud.
+std::optional<CloudFormat> formatByContent(std::string_view bytes);
+
+}  // namespace agricolmap::io

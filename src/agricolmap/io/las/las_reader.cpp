@@ -1,0 +1,105 @@
+#include "agricolmap/io/las/las_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "agricolmap/io/cloud/point_source.hpp"
+#include "agricolmap/io/las/las_header.hpp"
+#include "agricolmap/io/las/las_points.hpp"
+
+namespace agricolmap::io {
+namespace {
+
+class LasSource : public PointSource {
+ public:
+  LasSource(const LasHeader& header, const LasPoints& points, bool colours)
+      : header_(header), points_(points), colours_(colours && header.layout.rgb) {}
+
+  std::size_t points() const override { return static_cast<std::size_t>(header_.points); }
+  std::size_t chunks() const override { return points_.chunks(); }
+  std::size_t firstPoint(std::size_t chunk) const override { return points_.firstPoint(chunk); }
+  ColourKind colourKind() const override {
+    return colours_ ? ColourKind::kWideInteger : ColourKind::kNone;
+  }
+  bool floatCoordinates() const override { return false; }
+
+  void decode(std::size_t chunk, const Sink& sink) const override {
+    PointBlock block;
+    const LasWanted wanted = colours_ ? LasWanted::kPlaceColours : LasWanted::kPlace;
+    points_.decode(chunk, wanted, [&](const std::byte* records, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) {
+        take(records + i * header_.layout.length, block);
+        if (block.count < PointBlock::kCapacity) continue;
+        sink(block);
+        block.count = 0;
+        block.withheld = 0;
+      }
+    });
+    if (block.count > 0 || block.withheld > 0) sink(block);
+  }
+
+ private:
+  void take(const std::byte* record, PointBlock& block) const {
+    if (header_.layout.withheld(record)) {
+      ++block.withheld;
+      return;
+    }
+    const std::size_t i = block.count++;
+    const Eigen::Vector3d point = header_.pointOf(record);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      block.xyz[axis][i] = point[static_cast<Eigen::Index>(axis)];
+    }
+    if (!colours_) return;
+    for (std::size_t c = 0; c < 3; ++c) {
+      block.wide[c][i] = loadLe<std::uint16_t>(record + *header_.layout.rgb + 2 * c);
+    }
+  }
+
+  const LasHeader& header_;
+  const LasPoints& points_;
+  bool colours_;
+};
+
+/// What scanners without a camera write where the format has colours.
+void dropBlackColours(Cloud& cloud) {
+  const bool black = std::all_of(cloud.rgb.begin(), cloud.rgb.end(),
+                                 [](const Rgb& colour) { return colour == Rgb{}; });
+  if (!cloud.hasColour() || !black) return;
+  cloud.rgb.clear();
+  cloud.warnings.push_back(fmt::format("{}: all its colours are black; taken as none", cloud.name));
+}
+
+/// The names that the record "extra bytes" gives to what it describes.
+std::string extraNames(const LasHeader& header) {
+  constexpr std::uint16_t kExtraBytes = 4;
+  constexpr std::size_t kDescription = 192;
+  const LasRecord* const record = header.find("LASF_Spec", kExtraBytes);
+  std::string names;
+  if (record == nullptr) return names;
+  for (std::size_t at = 0; at + kDescription <= record->data.size(); at += kDescription) {
+    names += names.empty() ? "" : ", ";
+    for (std::size_t i = 4; i < 36 && record->data[at + i] != std::byte{0}; ++i) {
+      const auto c = std::to_integer<char>(record->data[at + i]);
+      names += c >= ' ' && c <= '~' ? c : '?';
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+Cloud readLas(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+  const LasHeader header = parseLasHeader(file.bytes(), name);
+  const auto points = lasPoints(file.bytes(), header, name);
+  Cloud cloud = assembleCloud(LasSource(header, *points, options.colours), name, options.map);
+  dropBlackColours(cloud);
+  cloud.fields = lasFields(header.layout);
+  const std::string extra = extraNames(header);
+  if (!extra.empty()) cloud.fields += fmt::format(" ({})", extra);
+  cloud.warnings.insert(cloud.warnings.begin(), header.warnings.begin(), header.warnings.end());
+  return cloud;
+}
+
+}  // namespace agricolmap::io

@@ -1,0 +1,29 @@
+// Stands for laz_points.cpp and laz_writer.cpp where LASzip is not built in.
+#include <fmt/format.h>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/io/las/las_points.hpp"
+#include "agricolmap/io/las/las_writer.hpp"
+
+namespace agricolmap::io {
+
+std::unique_ptr<LasPoints> lazPoints(std::span<const std::byte> /*bytes*/,
+                                     const LasHeader& /*header*/, const std::string& name) {
+  throw InputError(fmt::format(
+      "{}: is compressed (LAZ), and this build has no LASzip; build it with liblaszip-dev "
+      "(scripts/install-dependencies), or give uncompressed LAS",
+      name));
+}
+
+std::vector<std::byte> lazRecord(const LasLayout& /*layout*/) {
+  throw UsageError(
+      "writing LAZ needs LASzip, and this build has none; build it with liblaszip-dev "
+      "(scripts/install-dependencies), or write LAS");
+}
+
+std::unique_ptr<LasWriter::Encoder> lazEncoder(FileSink& /*sink*/, const LasLayout& layout) {
+  lazRecord(layout);
+  return nullptr;
+}
+
+}  // namespace agricolmap::io
