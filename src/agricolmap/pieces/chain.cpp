@@ -19,7 +19,7 @@ void listOptions(OptionTable& table, PiecesOptions& options) {
       .number("drift", options.drift, 0.0, 0.5, "",
               "by how much dead reckoning may be off, share of the way")
       .basic();
-  table.number("slip", options.slip, 0.1, 100.0, "m",
+  table.number("slip", options.slip, 0.1, 5.0, "m",
                "how far from where its neighbour puts it a piece is looked for");
 }
 

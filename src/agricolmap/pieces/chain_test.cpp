@@ -76,7 +76,7 @@ TEST(CutPath, CoversThePathByHalfOverlappingPieces) {
 }
 
 TEST(FollowPath, FollowsAStripThatBendsByDecimetresFromOneEndToTheOther) {
-  const auto offset = [](double x) { return Eigen::Vector2d(0.001, 0.0016) * x * x; };
+  const auto offset = [](double x) { return Eigen::Vector2d(0.001 * x * x, 0.0016 * x * x); };
   const TestScene scene = sceneWith(offset);
   const Chained found = follow(scene, 2.0);
   for (const PiecePose& piece : found.chain) {

@@ -258,7 +258,10 @@ std::vector<FollowedPieces> followFrom(const std::vector<Eigen::Affine2d>& poses
     followed.chain = pieces::followPath(signals, path, along, pose, options.pieces, options.dense);
     followed.significance = pieces::significanceOf(followed.chain);
     followed.joined = pieces::joined(followed.chain, path, half_width);
-    if (followed.joined) all.push_back(std::move(followed));
+    const auto held = static_cast<std::size_t>(
+        std::count_if(followed.chain.begin(), followed.chain.end(),
+                      [](const pieces::PiecePose& piece) { return piece.held; }));
+    if (followed.joined && 2 * held > followed.chain.size()) all.push_back(std::move(followed));
   }
   std::stable_sort(all.begin(), all.end(), [](const FollowedPieces& a, const FollowedPieces& b) {
     return a.significance > b.significance;

@@ -42,8 +42,8 @@ struct FollowedPieces {
   std::optional<pieces::Joined> joined;
   double significance = 0.0;
 };
-/// From each of `poses` of the piece about `along`; the most significant first, that one with what
-/// its pieces' heights are short of.
+/// From each of `poses` of the piece about `along`, those from which most pieces are found; the
+/// most significant first, that one with what its pieces' heights are short of.
 std::vector<FollowedPieces> followFrom(const std::vector<Eigen::Affine2d>& poses,
                                        const refine::PairSignals& signals, const deform::Path& path,
                                        double along, const RegistrationOptions& options);

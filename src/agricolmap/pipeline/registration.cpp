@@ -134,7 +134,10 @@ std::optional<Outcome> placeByPieces(const Cloud& moving, const deform::Path& pa
   for (std::size_t i = 1; i < followed.size(); ++i) {
     rivals.push_back({followed[i].joined->pose, followed[i].significance, 0.0, i, 0});
   }
-  Outcome outcome = settle(maps, laid, std::move(located), std::move(rivals), options, monitor);
+  // Every piece was found by itself: there is no other basin to look into.
+  RegistrationOptions sure = options;
+  sure.dense.hops = 0;
+  Outcome outcome = settle(maps, laid, std::move(located), std::move(rivals), sure, monitor);
   outcome.trace.attempts = anchor->outcome.trace.attempts;
   outcome.trace.pieces = best.chain;
   if (const auto lost = lostEnd(best, path, fixed.at(refine::kRankingFactor))) {

@@ -30,7 +30,7 @@ TEST(SidesApart, TellsTwoPassesFromOneThatBends) {
 }
 
 TEST(SidesApart, NoiseOfBlocksIsNone) {
-  EXPECT_FALSE(sidesApart(evidenceWith([](double x, double y) {
+  EXPECT_FALSE(sidesApart(evidenceWith([](double x, double y) -> Eigen::Vector2d {
     return 0.04 * Eigen::Vector2d(std::sin(17.0 * x + 5.0 * y), std::cos(23.0 * x - 11.0 * y));
   })));
 }
