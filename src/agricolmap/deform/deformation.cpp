@@ -5,6 +5,12 @@
 #include <utility>
 
 namespace agricolmap::deform {
+namespace {
+
+/// What cells on the wrong side of a slip may pull the parts by, per axis [m]; from development.
+constexpr double kBesideSlips = 0.008;
+
+}  // namespace
 
 Deformation::Deformation(Path path, const Eigen::Matrix2d& turn, const SplineBasis& basis)
     : coefficients(Eigen::MatrixX3d::Zero(basis.size(), 3)),
@@ -45,6 +51,7 @@ Eigen::Matrix2d Deformation::covarianceAt(const Eigen::Vector2d& moving) const {
     j.middleCols<2>(2 * (basis_.size() + static_cast<int>(k))).setIdentity();
   }
   Eigen::Matrix2d result = j * covariance * j.transpose();
+  if (!slips.empty()) result += kBesideSlips * kBesideSlips * Eigen::Matrix2d::Identity();
   // Beside a slip it is not known which side of it a point is on.
   for (const Slip& slip : slips) {
     if (slip.place_deviation <= 0.0) continue;
