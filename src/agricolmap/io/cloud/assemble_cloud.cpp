@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "agricolmap/core/error.hpp"
@@ -72,22 +73,51 @@ bool usableColour(const PointBlock& block, std::size_t i) {
          std::isfinite(block.wide[2][i]);
 }
 
+struct ColourRange {
+  float low = 0.0F;
+  float high = 0.0F;
+
+  void take(const PointBlock& block, std::size_t i) {
+    for (const auto& channel : block.wide) {
+      low = std::min(low, channel[i]);
+      high = std::max(high, channel[i]);
+    }
+  }
+  ColourRange& operator+=(const ColourRange& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+    return *this;
+  }
+};
+
+/// A first look at a file.
+struct Samples {
+  std::vector<Eigen::Vector3d> points;
+  ColourRange colours;  ///< of the points that tell a place, where colours are wide
+};
+
 /// Of every `step`-th chunk, of the points that tell a place every n-th, the first among them, so
 /// that there are about kSamples; in file order.
-std::vector<Eigen::Vector3d> samplePoints(const PointSource& source, std::size_t step) {
+Samples samplePoints(const PointSource& source, std::size_t step) {
   const std::size_t stride = std::max<std::size_t>(1, source.points() / step / kSamples);
-  std::vector<std::vector<Eigen::Vector3d>> parts((source.chunks() + step - 1) / step);
+  const bool wide = isWide(source.colourKind());
+  std::vector<Samples> parts((source.chunks() + step - 1) / step);
   parallelFor(parts.size(), [&](std::size_t part) {
     std::size_t seen = 0;
     source.decode(part * step, [&](const PointBlock& block) {
       for (std::size_t i = 0; i < block.count; ++i) {
         const Eigen::Vector3d point = pointOf(block, i);
-        if (tellsPlace(point) && seen++ % stride == 0) parts[part].push_back(point);
+        if (!tellsPlace(point)) continue;
+        if (wide && usableColour(block, i)) parts[part].colours.take(block, i);
+        if (seen++ % stride == 0) parts[part].points.push_back(point);
       }
     });
   });
-  std::vector<Eigen::Vector3d> samples;
-  for (const auto& part : parts) samples.insert(samples.end(), part.begin(), part.end());
+  Samples samples;
+  for (const Samples& part : parts) {
+    samples.points.insert(samples.points.end(), part.points.begin(), part.points.end());
+    samples.colours += part.colours;
+  }
   return samples;
 }
 
@@ -105,17 +135,21 @@ Eigen::Vector3d medianOf(const std::vector<Eigen::Vector3d>& points) {
   return median;
 }
 
+Samples samplesOf(const PointSource& source) {
+  const std::size_t step = std::max<std::size_t>(1, source.chunks() / kSampledChunks);
+  Samples samples = samplePoints(source, step);
+  // Most of the points cannot be used: none is spared a look.
+  if (samples.points.size() < kEnoughSamples && step > 1) samples = samplePoints(source, 1);
+  return samples;
+}
+
 /// The first point, if it is where the others are, else their middle. Zero when all points are
 /// there, or none can be used.
-Eigen::Vector3d chooseOrigin(const PointSource& source) {
-  const std::size_t step = std::max<std::size_t>(1, source.chunks() / kSampledChunks);
-  std::vector<Eigen::Vector3d> samples = samplePoints(source, step);
-  // Most of the points cannot be used: none is spared a look.
-  if (samples.size() < kEnoughSamples && step > 1) samples = samplePoints(source, 1);
-  if (samples.empty()) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d median = medianOf(samples);
-  const bool of_the_cloud = within(samples.front() - median, kOfTheCloud);
-  return (of_the_cloud ? samples.front() : median).array().round().matrix();
+Eigen::Vector3d chooseOrigin(const std::vector<Eigen::Vector3d>& points) {
+  if (points.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d median = medianOf(points);
+  const bool of_the_cloud = within(points.front() - median, kOfTheCloud);
+  return (of_the_cloud ? points.front() : median).array().round().matrix();
 }
 
 void warnIfCoarse(const PointSource& source, Cloud& cloud) {
@@ -129,51 +163,19 @@ void warnIfCoarse(const PointSource& source, Cloud& cloud) {
       cloud.name, far, 100.0F * step));
 }
 
-struct ColourRange {
-  float low = 0.0F;
-  float high = 0.0F;
-};
-
-ColourRange colourRange(const PointSource& source, const Eigen::Vector3d& origin) {
-  std::vector<ColourRange> parts(source.chunks());
-  parallelFor(source.chunks(), [&](std::size_t chunk) {
-    ColourRange& range = parts[chunk];
-    source.decode(chunk, [&](const PointBlock& block) {
-      for (std::size_t i = 0; i < block.count; ++i) {
-        if (!within(pointOf(block, i) - origin, kMaxFromOrigin) || !usableColour(block, i)) {
-          continue;
-        }
-        for (const auto& channel : block.wide) {
-          range.low = std::min(range.low, channel[i]);
-          range.high = std::max(range.high, channel[i]);
-        }
-      }
-    });
-  });
-  ColourRange range;
-  for (const ColourRange& part : parts) {
-    range.low = std::min(range.low, part.low);
-    range.high = std::max(range.high, part.high);
-  }
-  return range;
-}
-
-/// What wide colours are multiplied by to be 0–255.
-float colourScale(const PointSource& source, const Cloud& cloud) {
-  const ColourRange range = colourRange(source, cloud.origin);
-  if (range.low >= 0.0F) {
-    if (source.colourKind() == ColourKind::kWideFloat && range.high <= 1.0F) return 255.0F;
-    if (range.high <= 255.0F) return 1.0F;
-    if (range.high <= 65535.0F) return 1.0F / 257.0F;
-  }
-  throw InputError(
-      fmt::format("{}: its colours go from {} to {}; known are 0..1 (float), 0..255 and 0..65535",
-                  cloud.name, range.low, range.high));
+/// What wide colours of such values are multiplied by to be 0–255; nothing where they fit no range.
+std::optional<float> colourScale(ColourKind kind, const ColourRange& range) {
+  if (!isWide(kind)) return 1.0F;
+  if (range.low < 0.0F) return std::nullopt;
+  if (kind == ColourKind::kWideFloat && range.high <= 1.0F) return 255.0F;
+  if (range.high <= 255.0F) return 1.0F;
+  if (range.high <= 65535.0F) return 1.0F / 257.0F;
+  return std::nullopt;
 }
 
 Rgb narrow(const PointBlock& block, std::size_t i, float scale) {
   const auto byte = [&](std::size_t c) {
-    return static_cast<std::uint8_t>(std::min(255.0F, scale * block.wide[c][i] + 0.5F));
+    return static_cast<std::uint8_t>(std::clamp(scale * block.wide[c][i] + 0.5F, 0.0F, 255.0F));
   };
   return {byte(0), byte(1), byte(2)};
 }
@@ -195,11 +197,13 @@ struct Tally {
   std::size_t kept = 0;
   std::size_t far = 0;  ///< that tell a place, but one too far from the origin
   std::size_t withheld = 0;
+  ColourRange colours;  ///< of what was kept, where colours are wide
 
   Tally& operator+=(const Tally& other) {
     kept += other.kept;
     far += other.far;
     withheld += other.withheld;
+    colours += other.colours;
     return *this;
   }
 };
@@ -228,6 +232,7 @@ void compact(const PointSource& source, const std::vector<Tally>& tallies, Cloud
 /// Decodes a chunk to where its points belong when none before them is dropped.
 Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_scale, Cloud& cloud) {
   const ColourKind kind = source.colourKind();
+  const bool wide = isWide(kind);
   const std::size_t first = source.firstPoint(chunk);
   Tally tally;
   source.decode(chunk, [&](const PointBlock& block) {
@@ -239,17 +244,31 @@ Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_sca
         tally.far += tellsPlace(point) ? 1 : 0;
         continue;
       }
-      if (isWide(kind) && !usableColour(block, i)) continue;
+      if (wide && !usableColour(block, i)) continue;
       const std::size_t next = first + tally.kept++;
       cloud.xyz[next] = local.cast<float>();
       if (kind == ColourKind::kByte) {
         cloud.rgb[next] = block.rgb[i];
       } else if (kind != ColourKind::kNone) {
         cloud.rgb[next] = narrow(block, i, colour_scale);
+        tally.colours.take(block, i);
       }
     }
   });
   return tally;
+}
+
+std::vector<Tally> decodeAll(const PointSource& source, float colour_scale, Cloud& cloud) {
+  std::vector<Tally> tallies(source.chunks());
+  parallelFor(source.chunks(), [&](std::size_t chunk) {
+    tallies[chunk] = decodeChunk(source, chunk, colour_scale, cloud);
+  });
+  return tallies;
+}
+
+Tally sumOf(const std::vector<Tally>& tallies) {
+  return std::accumulate(tallies.begin(), tallies.end(), Tally{},
+                         [](Tally sum, const Tally& part) { return sum += part; });
 }
 
 void checkDropped(const PointSource& source, const Tally& tally, Cloud& cloud) {
@@ -284,21 +303,26 @@ Cloud assembleCloud(const PointSource& source, const std::string& name, const Co
   if (map != nullptr) return assembleCloud(MappedSource(source, *map), name);
   Cloud cloud;
   cloud.name = name;
-  cloud.origin = chooseOrigin(source);
+  const Samples samples = samplesOf(source);
+  cloud.origin = chooseOrigin(samples.points);
   warnIfCoarse(source, cloud);
   const ColourKind kind = source.colourKind();
-  const float scale = isWide(kind) ? colourScale(source, cloud) : 1.0F;
   resizeInHugePages(cloud.xyz, source.points());
   if (kind != ColourKind::kNone) resizeInHugePages(cloud.rgb, source.points());
-  std::vector<Tally> tallies(source.chunks());
-  parallelFor(source.chunks(), [&](std::size_t chunk) {
-    tallies[chunk] = decodeChunk(source, chunk, scale, cloud);
-  });
+  // The largest colour is known when all points were seen, but the samples tell nearly always what
+  // it will be: a second pass is dear where points are compressed.
+  const float guessed = colourScale(kind, samples.colours).value_or(1.0F);
+  std::vector<Tally> tallies = decodeAll(source, guessed, cloud);
+  const Tally sum = sumOf(tallies);
+  const std::optional<float> scale = colourScale(kind, sum.colours);
+  if (!scale) {
+    throw InputError(
+        fmt::format("{}: its colours go from {} to {}; known are 0..1 (float), 0..255 and 0..65535",
+                    name, sum.colours.low, sum.colours.high));
+  }
+  if (*scale != guessed) tallies = decodeAll(source, *scale, cloud);
   compact(source, tallies, cloud);
-  checkDropped(source,
-               std::accumulate(tallies.begin(), tallies.end(), Tally{},
-                               [](Tally sum, const Tally& part) { return sum += part; }),
-               cloud);
+  checkDropped(source, sum, cloud);
   return cloud;
 }
 

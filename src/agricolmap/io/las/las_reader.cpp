@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "agricolmap/io/cloud/point_source.hpp"
 #include "agricolmap/io/las/las_header.hpp"
@@ -88,6 +90,25 @@ std::string extraNames(const LasHeader& header) {
   return names;
 }
 
+/// Whether the file says that x and y are degrees: by a GeoTIFF key, or by how its WKT begins.
+bool saysDegrees(const LasHeader& header) {
+  constexpr std::uint16_t kModelType = 1024;
+  constexpr std::uint16_t kGeographic = 2;
+  constexpr std::size_t kKey = 8;
+  if (const LasRecord* const wkt = header.find("LASF_Projection", 2112)) {
+    const std::string_view text(reinterpret_cast<const char*>(wkt->data.data()), wkt->data.size());
+    return text.starts_with("GEOG");
+  }
+  const LasRecord* const keys = header.find("LASF_Projection", 34735);
+  if (keys == nullptr) return false;
+  for (std::size_t at = kKey; at + kKey <= keys->data.size(); at += kKey) {
+    if (loadLe<std::uint16_t>(&keys->data[at]) == kModelType) {
+      return loadLe<std::uint16_t>(&keys->data[at + 6]) == kGeographic;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Cloud readLas(const MappedFile& file, const std::string& name, const ReadOptions& options) {
@@ -98,6 +119,10 @@ Cloud readLas(const MappedFile& file, const std::string& name, const ReadOptions
   cloud.fields = lasFields(header.layout);
   const std::string extra = extraNames(header);
   if (!extra.empty()) cloud.fields += fmt::format(" ({})", extra);
+  if (options.map == nullptr && saysDegrees(header)) {
+    cloud.warnings.push_back(
+        fmt::format("{}: its coordinates are degrees, and taken as metres here", name));
+  }
   cloud.warnings.insert(cloud.warnings.begin(), header.warnings.begin(), header.warnings.end());
   return cloud;
 }

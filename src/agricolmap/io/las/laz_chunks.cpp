@@ -30,7 +30,7 @@ enum : std::uint16_t {
 constexpr std::uint32_t kVariableSize = 0xFFFFFFFFU;
 constexpr std::size_t kRecordHead = 34;
 constexpr std::size_t kItemBytes = 6;
-/// Points that a byte can hold: equal ones take a thousandth of it, real ones several.
+/// Points that a byte can hold: equal ones take a hundredth of it, real ones several.
 constexpr std::size_t kMostPerByte = 1000;
 
 struct Item {

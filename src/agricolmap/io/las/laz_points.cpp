@@ -12,6 +12,7 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/las/las_points.hpp"
 #include "agricolmap/io/las/laz_chunks.hpp"
 
@@ -22,6 +23,8 @@ constexpr std::size_t kHeader = 227;
 constexpr std::size_t kRecordHeader = 54;
 constexpr std::size_t kPointer = 8;
 constexpr std::size_t kChunkSize = 12;  ///< where the record has it
+/// Points that a byte of a real cloud holds, at most.
+constexpr std::size_t kRealPerByte = 20;
 /// Records handed over at a time.
 constexpr std::size_t kBlock = 512;
 
@@ -165,6 +168,12 @@ class CompressedPoints : public LasPoints {
         throw InputError(name + ": has more points in a chunk than can be read");
       }
     }
+    // A chunk that claims more than real ones hold proves it before memory is set aside for it.
+    parallelFor(table_.chunks.size(), [&](std::size_t i) {
+      const LazChunk& chunk = table_.chunks[i];
+      if (chunk.points / kRealPerByte <= chunk.bytes.size()) return;
+      decode(i, LasWanted::kPlace, [](const std::byte* /*records*/, std::size_t /*count*/) {});
+    });
   }
 
   std::size_t chunks() const override { return table_.chunks.size(); }

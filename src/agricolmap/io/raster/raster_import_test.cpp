@@ -146,6 +146,8 @@ TEST(RasterImport, RefusesWhatHasNoMetres) {
   refused(sheet, {"different coordinate systems", "32N", "33N"});
   sheet.epsg = 2263;  // New York, US survey feet
   refused(sheet, {"units of 0.3048"});
+  sheet.epsg = 3857;  // Web Mercator
+  refused(sheet, {"o.tif", "Pseudo-Mercator", "0.7", "on the ground"});
   sheet = {};
   sheet.epsg = 0;
   sheet.georeferenced = false;

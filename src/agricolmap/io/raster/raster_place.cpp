@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/io/crs/crs.hpp"
+#include "agricolmap/io/crs/srs.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -33,6 +35,7 @@ void checkMetres(const std::string& name, const RasterPlace& place) {
     throw InputError(fmt::format("{}: its georeference is degenerate", name));
   }
   if (place.crs.empty()) return;
+  requireProjDatabase();
   const OGRSpatialReference crs = horizontalCrs(place, name);
   if (crs.IsGeographic() != 0 || crs.IsGeocentric() != 0) {
     throw InputError(fmt::format(
@@ -48,6 +51,7 @@ void checkMetres(const std::string& name, const RasterPlace& place) {
                     "gdalwarp -t_srs",
                     name, metres, unit == nullptr ? "unnamed" : unit));
   }
+  checkGroundScale(name, crsFrom(crs), place.world_from_pixel->translation());
 }
 
 std::optional<std::string> checkSameCrs(const std::string& name, const RasterPlace& place,
