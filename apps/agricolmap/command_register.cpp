@@ -48,7 +48,7 @@ LoadedPair load(const RegisterArguments& arguments) {
 }
 
 void printSummary(const pipeline::Registration& result, const std::string& directory) {
-  fmt::print("{}\n", toString(result.verdict.status));
+  fmt::print("{}\n", headline(result.verdict));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
   if (result.verdict.status == verdict::Status::kAmbiguous) {
     fmt::print("  (the guess: --prior, --prior-sigma)\n");

@@ -27,6 +27,7 @@ Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
     return refine::fitVertical(signals.fixed().grid(), signals.moving().grid(), pose,
                                options.vertical);
   });
+  placed.heights_verdict = verdict::judgeHeights(placed.heights, options.uncertainty);
   monitor.run(Stage::kJudge, [&] {
     // At the ranking level: finer maps may be sparser than their cells.
     const refine::SignalPair whole = signals.whole(refine::kRankingFactor);
@@ -44,7 +45,7 @@ Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
         options.uncertainty.lean * map::canopyHeight(signals.moving().grid()));
     placed.uncertainty =
         verdict::estimateUncertainty(fixed, moving, pose, placed.evidence, space, systematic,
-                                     placed.heights.deviation(), options.uncertainty);
+                                     placed.heights_verdict.deviation, options.uncertainty);
   });
   return placed;
 }
@@ -105,6 +106,7 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
   }
   verdict::Finding finding{.evidence = placed.evidence,
                            .uncertainty = placed.uncertainty,
+                           .heights = placed.heights_verdict,
                            .overlap = placed.overlap,
                            .pose = placed.pose,
                            .rivals = {}};

@@ -119,6 +119,8 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
           : std::pair(place(maps, correlation::MapSignals(maps.fixed, options.signal),
                             locate::kMostAttempts, options, locator, monitor),
                       1.0);
+  // Only now: a search that found the place need not look for another one.
+  if (options.require_heights) verdict::requireHeights(outcome.verdict);
   return monitor.run(Stage::kCompose, [&] {
     return compose(fixed, moving, std::move(maps), std::move(outcome), scale, options);
   });
