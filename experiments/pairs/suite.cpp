@@ -52,6 +52,7 @@ const std::vector<Entry>& entries() {
     add("mirrored", mirroredDateCases, 20, 5001, 0);
     add("slips", slipCases, 1, 5001, 0);
     add("other-generator", otherGeneratorCases, 4, 1001, 1000);  // as its script's
+    add("heights", heightsCases, 4, 1001, 1000);                 // likewise
     return made;
   }();
   return all;

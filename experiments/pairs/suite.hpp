@@ -44,8 +44,9 @@ struct SuiteOptions {
 
 /// "paper": the paper's crops, other fields, real imagery; "locate": no guess, hard views and what
 /// must not be accepted; "curves": one setting varied at a time; "elsewhere-sim": what real flights
-/// have and the crops' presets have not; "translation", "heading", "joint", "accuracy", "inliers":
-/// drawn views from guesses of known error. docs/campaign-suites.md says which settings each has.
+/// have and the crops' presets have not; "heights": canopies, ridges and slopes; "translation",
+/// "heading", "joint", "accuracy", "inliers": drawn views from guesses of known error.
+/// docs/campaign-suites.md says which settings each has.
 std::vector<std::string> suiteNames();
 std::vector<Settings> settingsOf(const std::string& suite);
 /// Throws UsageError for an unknown suite, and for settings that it does not have.
