@@ -212,6 +212,7 @@ TEST(RegisterClouds, FindsThePlaceAndSaysHowSureItIs) {
   ASSERT_TRUE(result.heights);
   EXPECT_TRUE(result.heights->measured) << result.heights->words;
   EXPECT_LT(result.heights->deviation_m, 0.045);
+  EXPECT_TRUE(result.heights->limit.empty());
   ASSERT_TRUE(result.parts);
   EXPECT_GT(result.parts->shift_m.norm(), 0.5);
   EXPECT_NEAR(std::abs(result.parts->heading_deg), 2.0, 1.0);
