@@ -208,8 +208,11 @@ TEST(RegisterClouds, FindsThePlaceAndSaysHowSureItIs) {
     worst = std::max(worst, (*result.fixed_from_moving * point - truth * point).norm());
   }
   EXPECT_LT(worst, 0.05);
-  EXPECT_GT(result.probability, 0.8);
-  EXPECT_GE(result.plane_probability, result.probability);
+  EXPECT_GT(result.plane_probability, 0.8);
+  ASSERT_TRUE(result.heights);
+  EXPECT_TRUE(result.heights->measured) << result.heights->words;
+  EXPECT_LT(result.heights->deviation_m, 0.045);
+  EXPECT_TRUE(result.heights->limit.empty());
   ASSERT_TRUE(result.parts);
   EXPECT_GT(result.parts->shift_m.norm(), 0.5);
   EXPECT_NEAR(std::abs(result.parts->heading_deg), 2.0, 1.0);
@@ -293,7 +296,9 @@ TEST(Report, IsThatOfTheCommandLine) {
   EXPECT_EQ(report["version"], version());
   EXPECT_EQ(report["preset"], "default");
   EXPECT_EQ(report["pictures"], pictures);
-  EXPECT_EQ(report["probability"], result.probability);
+  EXPECT_EQ(report["plane_probability"], result.plane_probability);
+  EXPECT_EQ(report["heights"]["status"], result.heights->measured ? "measured" : "limited");
+  EXPECT_EQ(report["heights"]["deviation_m"], result.heights->deviation_m);
   EXPECT_EQ(report["transform"]["matrix"][0][3], result.fixed_from_moving->matrix()(0, 3));
   EXPECT_EQ(report["uncertainty"]["covariance"][3][5], result.uncertainty->covariance[23]);
   EXPECT_EQ(report["options"]["verdict"]["min_probability"], 0.7);

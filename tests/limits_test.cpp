@@ -76,7 +76,7 @@ RegistrationOptions presetFor(const std::string& path) {
 
 void expectSound(const Registration& result) {
   EXPECT_FALSE(result.verdict.reasons.empty());
-  for (const double p : {result.verdict.probability, result.verdict.plane_probability}) {
+  for (const double p : {result.verdict.plane_probability, result.verdict.place_probability}) {
     EXPECT_GE(p, 0.0);
     EXPECT_LE(p, 1.0);
   }
@@ -147,7 +147,7 @@ TEST(Limits, WhatIsRefusedForDoingNothingDoesNothing) {
       EXPECT_EQ(after.transform->fixed_from_moving.matrix(),
                 before.transform->fixed_from_moving.matrix())
           << name;
-      EXPECT_EQ(after.verdict.probability, before.verdict.probability) << name;
+      EXPECT_EQ(after.verdict.plane_probability, before.verdict.plane_probability) << name;
     }
   }
 }

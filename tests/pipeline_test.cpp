@@ -168,7 +168,7 @@ TEST(Pipeline, TwoEqualFieldsAreAmbiguous) {
   const pipeline::Registration result =
       pipeline::registerClouds(field, pair.ugv, pair.prior, options, monitor);
   ASSERT_EQ(result.verdict.status, verdict::Status::kAmbiguous);
-  EXPECT_LE(result.verdict.probability, 0.5);
+  EXPECT_LE(result.verdict.plane_probability, 0.5);
   ASSERT_EQ(result.alternatives.size(), 1U);
   // One of the two places is the truth, and the other lies 15 m beside it.
   const evaluate::Truth truth{pair.best_affine, pair.truth};

@@ -34,7 +34,7 @@ struct RegisterArguments {
 };
 
 void printSummary(const pipeline::Registration& result, const std::string& directory) {
-  fmt::print("{}\n", toString(result.verdict.status));
+  fmt::print("{}\n", headline(result.verdict));
   for (const std::string& reason : result.verdict.reasons) fmt::print("  {}\n", reason);
   if (!result.verdict.remedies.empty()) {
     fmt::print(

@@ -97,11 +97,16 @@ def without_single(shown):
     return shown.drop(columns="method") if shown.method.nunique() == 1 else shown
 
 
+def _stated(rows):
+    """In rows of earlier sources heights included."""
+    return rows.probability.fillna(rows.plane_probability)
+
+
 def _refusals(rows):
     """What must not be accepted unless it is right."""
     table = by_group(rows, ["case_kind", "method"], lambda group: {
         "negative": bool(group.negative.any()), **counts(group),
-        "highest_wrong_probability": group.probability[~group.right].max()})
+        "highest_wrong_probability": _stated(group)[~group.right].max()})
     return Table("refusals", table, without_single(pd.DataFrame({
         "kind": table.case_kind, "method": table.method, "pairs": table.runs,
         "has a right place": ["no" if one else "yes" for one in table.negative],

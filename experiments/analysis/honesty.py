@@ -5,6 +5,7 @@ that were made elsewhere (suites `dates`, `mirrored`, `slips`, `other-generator`
 import pandas as pd
 from scipy.stats import chi2
 
+from . import heights
 from .cases import kind_of, without_single
 from .probability import quality
 from .shares import by_group, number, percent
@@ -55,7 +56,8 @@ def _stated(rows):
 
 
 def text(rows):
-    """Three tables: cases of one kind together, each case, and what is stated."""
+    """Three tables: cases of one kind together, each case, and what is stated; and of the suite
+    `heights` a fourth."""
     rows = rows.assign(
         kind=[kind_of(a, b) for a, b in zip(rows.case_name, rows.dataset)],
         case=rows.case_name)
@@ -63,5 +65,7 @@ def text(rows):
               for by in ("kind", "case")]
     tables.append(by_group(rows, ["suite", "settings", "method"], _stated))
     with pd.option_context("display.width", None, "display.max_columns", None):
-        return "\n\n".join(without_single(table.fillna("–")).to_string(index=False)
-                           for table in tables)
+        texts = [without_single(table.fillna("–")).to_string(index=False) for table in tables]
+        if not heights.of_suite(rows).empty:
+            texts.append(heights.text(rows))
+        return "\n\n".join(texts)

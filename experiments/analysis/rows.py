@@ -14,18 +14,23 @@ NUMBERS = (
     "setting", "guess_scale", "guess_translation", "guess_heading",
     "rms", "rms_horizontal", "rms_vertical", "aligned_rms",
     "aligned_rms_horizontal", "best_affine_rms", "worst", "rms_to_best_affine", "e_t", "e_r", "e_s",
-    "bend_gain", "slips", "slip_place", "places_covered", "probability", "plane_probability", "place_probability", "uniqueness", "significance", "decoy",
+    "bend_gain", "slips", "slip_place", "places_covered",
+    "plane_probability", "place_probability", "uniqueness", "significance", "decoy",
     "agreeing", "blocks", "expected_rms", "systematic_rms", "local_rms", "height_deviation",
+    "heights_limited",
     "overlap", "block_rms", "correlation", "attempts", "pose_mahalanobis2", "centre_mahalanobis2", "height_mahalanobis2",
+    "height_error",
     "matches", "matches_right", "matches_coherent", "rematches", "rematches_right",
     "rematches_coherent", "fixed_points", "moving_points", "make_s", "run_s", "cpu_s")
 COLUMNS = TEXTS + WHOLE + FLAGS + NUMBERS
 # Of rows of earlier sources, where a run could be a process of its own (`in_process` 0): its wall
-# time, reading included, which `cpu_s` then covers, too; its memory, and that before it read.
-EARLIER = ("in_process", "wall_s", "peak_mib", "idle_mib")
+# time, reading included, which `cpu_s` then covers, too; its memory, and that before it read; and
+# where the stated probability was that of being right in the plane and in height.
+EARLIER = ("in_process", "wall_s", "peak_mib", "idle_mib", "probability")
 # Rows that documents quote may be older than these.
 LATER = ("place_probability", "decoy", "systematic_rms", "aligned_rms", "aligned_rms_horizontal",
-         "best_affine_rms", "bend_gain", "slips", "slip_place", "places_covered")
+         "best_affine_rms", "bend_gain", "slips", "slip_place", "places_covered",
+         "heights_limited", "height_error")
 KEY = ["suite", "settings", "case_name", "seed", "setting", "guess_scale", "method"]
 STATUSES = ("accepted", "rejected", "ambiguous", "failed", "skipped")
 

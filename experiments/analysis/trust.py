@@ -72,12 +72,15 @@ def _coverage_plot(table, answers):
 
 def section(rows):
     """Nothing without rows that state a probability."""
-    stated = rows[rows.probability.notna()]
+    # Heights included in rows of earlier sources, which say so in a column of their own.
+    with_heights = rows.probability.notna().any()
+    stated = rows[(rows.probability if with_heights else rows.plane_probability).notna()]
     if stated.empty:
         return None
-    right = is_right(stated)
-    bins = reliability(stated.probability.to_numpy(), right)
-    worth = quality(stated.probability, right)
+    right = is_right(stated, plane=not with_heights)
+    probability = stated.probability if with_heights else stated.plane_probability
+    bins = reliability(probability.to_numpy(), right)
+    worth = quality(probability, right)
     facts = ("{answers} answers state a probability: expected calibration error "
              "{calibration_error_equal_width:.4f} in ten bins of equal width, "
              "{calibration_error_equal_mass:.4f} in ten of equal number; area under the curve "

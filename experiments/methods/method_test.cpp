@@ -102,7 +102,7 @@ TEST(Product, TellsWhatItsProbabilityRestsOn) {
       makeMethod("default").run(testing::inputOf(testing::smallPair(), {}, {}));
   ASSERT_TRUE(outcome.accepted) << outcome.why;
   for (const char* name :
-       {"probability", "plane_probability", "uniqueness", "significance", "agreeing", "blocks",
+       {"plane_probability", "heights_limited", "uniqueness", "significance", "agreeing", "blocks",
         "expected_rms", "local_rms", "height_deviation", "overlap", "attempts"}) {
     EXPECT_TRUE(std::isfinite(factOf(outcome, name))) << name;
   }

@@ -63,8 +63,7 @@ void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
   const pipeline::Placed& placed = *result.placed;
   const verdict::Evidence& evidence = placed.evidence;
   outcome.facts.insert(outcome.facts.end(),
-                       {{"probability", result.verdict.probability},
-                        {"plane_probability", result.verdict.plane_probability},
+                       {{"plane_probability", result.verdict.plane_probability},
                         {"place_probability", result.verdict.place_probability},
                         {"uniqueness", evidence.uniqueness},
                         {"significance", evidence.significance},
@@ -73,7 +72,8 @@ void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
                         {"blocks", static_cast<double>(evidence.blocks.size())},
                         {"overlap", placed.overlap},
                         {"block_rms", blockRms(evidence)},
-                        {"correlation", placed.correlation}});
+                        {"correlation", placed.correlation},
+                        {"heights_limited", result.verdict.heights.limited() ? 1.0 : 0.0}});
   if (placed.followed) {
     outcome.facts.insert(
         outcome.facts.end(),

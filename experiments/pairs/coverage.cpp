@@ -40,6 +40,7 @@ std::optional<Coverage> coverageOf(const Eigen::Affine3d& found_transform,
   const Eigen::Vector2d shift = coverage.error.head<2>();
   coverage.shift_distance2 =
       shift.dot(uncertainty.covariance.topLeftCorner<2, 2>().ldlt().solve(shift));
+  coverage.height_error = -height / count;
   const double in_deviations = height / count / uncertainty.height_deviation;
   coverage.height_distance2 = in_deviations * in_deviations;
   return coverage;

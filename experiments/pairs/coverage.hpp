@@ -25,6 +25,7 @@ struct Coverage {
       0.0;  ///< squared Mahalanobis distance, χ² of 5 if the covariance is right
   double shift_distance2 = 0.0;   ///< of the shift at the strip's centre alone: χ² of 2
   double height_distance2 = 0.0;  ///< of the mean height: χ² of 1
+  double height_error = 0.0;      ///< by how much the strip is too high, on average [m]
 };
 
 /// Of `found` (moving file → fixed file). Nothing for fewer than five points.

@@ -55,6 +55,7 @@ const std::vector<Entry>& entries() {
     add("terrain", terrainCases, 6, 60000, 3000);
     add("bends", bendCases, 1, 7001, 0);
     add("other-generator", otherGeneratorCases, 4, 1001, 1000);  // as its script's
+    add("heights", heightsCases, 4, 1001, 1000);                 // likewise
     return made;
   }();
   return all;

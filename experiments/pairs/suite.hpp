@@ -44,7 +44,8 @@ struct SuiteOptions {
 
 /// "paper": the paper's crops, other fields, real imagery; "locate": no guess, hard views and what
 /// must not be accepted; "curves": one setting varied at a time; "bends": drift and slips;
-/// "elsewhere-sim": what real flights have and the crops' presets have not; "translation",
+/// "elsewhere-sim": what real flights have and the crops' presets have not; "heights": canopies,
+/// ridges and slopes; "long", "terrain": what their names say; "translation",
 /// "heading", "joint", "accuracy", "inliers": drawn views from guesses of known error.
 /// docs/campaign-suites.md says which settings each has.
 std::vector<std::string> suiteNames();

@@ -66,6 +66,7 @@ std::vector<Case> otherGeneratorCases(const SuiteOptions& options);
 std::vector<Case> elsewhereCases(const SuiteOptions& options);  ///< of all settings
 std::vector<Case> longCases(const SuiteOptions& options);       ///< of all settings
 std::vector<Case> terrainCases(const SuiteOptions& options);    ///< of all settings
+std::vector<Case> heightsCases(const SuiteOptions& options);    ///< likewise
 /// The paper's four fields and two real ones in drawn views, guesses exact.
 std::vector<Case> viewCases(const SuiteOptions& options);
 /// The guesses of a suite on viewCases, by its name.

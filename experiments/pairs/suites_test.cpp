@@ -103,25 +103,42 @@ TEST(Settings, OfDrawnViewsAreDisjoint) {
   }
 }
 
-TEST(Settings, OfElsewhereAreDisjoint) {
-  // All values that an option may take in any case.
-  const auto valuesOf = [](Settings settings) {
-    std::set<std::string> values;
-    for (const Case& one : casesOf("elsewhere-sim", settings)) {
-      for (const OptionRange& range : one.ranges) {
-        EXPECT_FALSE(range.values.empty()) << range.path;
-        for (const double value : range.values) {
-          values.insert(fmt::format("{} {}", range.path, value));
-        }
+/// All values that an option may take in any case of a crop.
+std::set<std::string> valuesOf(const std::string& suite, Settings settings) {
+  std::set<std::string> values;
+  for (const Case& one : casesOf(suite, settings)) {
+    for (const OptionRange& range : one.ranges) {
+      EXPECT_FALSE(range.values.empty()) << range.path;
+      for (const double value : range.values) {
+        values.insert(fmt::format("{} {} {}", one.dataset, range.path, value));
       }
+    }
+  }
+  return values;
+}
+
+TEST(Settings, OfHeightsAreDisjoint) {
+  const std::set<std::string> develop = valuesOf("heights", Settings::kDevelop);
+  const std::set<std::string> calibrate = valuesOf("heights", Settings::kCalibrate);
+  for (const std::string& one : develop) EXPECT_FALSE(calibrate.contains(one)) << one;
+  for (const std::string& one : valuesOf("heights", Settings::kFinal)) {
+    EXPECT_FALSE(develop.contains(one)) << one;
+    EXPECT_FALSE(calibrate.contains(one)) << one;
+  }
+}
+
+TEST(Settings, OfElsewhereAreDisjoint) {
+  const auto ofElsewhere = [](Settings settings) {
+    std::set<std::string> values = valuesOf("elsewhere-sim", settings);
+    for (const Case& one : casesOf("elsewhere-sim", settings)) {
       values.insert(fmt::format("{} rows {}", one.dataset, one.options.field.row_spacing));
     }
     return values;
   };
-  const std::set<std::string> develop = valuesOf(Settings::kDevelop);
-  const std::set<std::string> calibrate = valuesOf(Settings::kCalibrate);
+  const std::set<std::string> develop = ofElsewhere(Settings::kDevelop);
+  const std::set<std::string> calibrate = ofElsewhere(Settings::kCalibrate);
   for (const std::string& one : develop) EXPECT_FALSE(calibrate.contains(one)) << one;
-  for (const std::string& one : valuesOf(Settings::kFinal)) {
+  for (const std::string& one : ofElsewhere(Settings::kFinal)) {
     EXPECT_FALSE(develop.contains(one)) << one;
     EXPECT_FALSE(calibrate.contains(one)) << one;
   }

@@ -75,8 +75,7 @@ struct Row {
   double places_covered = kNotKnown;
 
   // What the product states of its answer; empty for peers.
-  double probability = kNotKnown;        ///< of being right (RMS within 5 cm)
-  double plane_probability = kNotKnown;  ///< of being so in the plane
+  double plane_probability = kNotKnown;  ///< of being within 5 cm RMS in the plane
   double place_probability = kNotKnown;  ///< of being the right place, however exact
   // The facts that the probabilities rest on (verdict/probability.hpp).
   double uniqueness = kNotKnown;
@@ -88,7 +87,8 @@ struct Row {
   double systematic_rms =
       kNotKnown;  ///< part of that which plants and soil contradict one another by
   double local_rms = kNotKnown;
-  double height_deviation = kNotKnown;
+  double height_deviation = kNotKnown;  ///< stated [m]; empty without heights
+  double heights_limited = kNotKnown;   ///< 1: heights are not believed, 0: they are
   double overlap = kNotKnown;
   // Further figures.
   double block_rms = kNotKnown;    ///< offsets of the agreeing blocks [m]
@@ -100,6 +100,7 @@ struct Row {
   double pose_mahalanobis2 = kNotKnown;
   double centre_mahalanobis2 = kNotKnown;
   double height_mahalanobis2 = kNotKnown;
+  double height_error = kNotKnown;  ///< by how much the strip lies too high, on average [m]
 
   // Of methods that match points: all matches, those within 4 cm of the truth, those that the
   // method took for coherent; and of a second matching from what the first gave.

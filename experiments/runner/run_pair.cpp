@@ -149,6 +149,7 @@ void PairRuns::fillErrors(const MethodOutcome& outcome, const Moving& moving, Ro
                                        moving.cloud, moving.truth)) {
     row.pose_mahalanobis2 = coverage->pose_distance2;
     row.centre_mahalanobis2 = coverage->shift_distance2;
+    row.height_error = coverage->height_error;
     row.height_mahalanobis2 = coverage->height_distance2;
   }
 }

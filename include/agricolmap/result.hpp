@@ -80,6 +80,15 @@ struct Registration {
     double correlation = 0.0;
   };
 
+  /// Whether heights are as good as the place; acceptance does not hang on it.
+  struct Heights {
+    bool measured = false;
+    std::string limit;         ///< "flat", "no_ground", "canopy" or "uneven"; empty when measured
+    std::string words;         ///< the same in plain words
+    double deviation_m = 0.0;  ///< of the height, bias included; infinite without heights
+    double bias_m = 0.0;       ///< part of it that all of the cloud has in common
+  };
+
   /// Another place where the moving cloud fits.
   struct Alternative {
     Transform fixed_from_moving = Transform::Identity();
@@ -96,8 +105,7 @@ struct Registration {
   Status status = Status::kRejected;
   std::vector<std::string> reasons;   ///< why, in plain words; never empty
   std::vector<std::string> remedies;  ///< what may help where it is not accepted
-  double probability = 0.0;           ///< that the result is within 5 cm RMS
-  double plane_probability = 0.0;     ///< that it is so in the plane, whatever the height
+  double plane_probability = 0.0;     ///< that the result is within 5 cm RMS in the plane
   double place_probability = 0.0;     ///< calibrated, that it is the right place, however exact
 
   /// Moving file → fixed file coordinates [m]. A rejected registration may have one, too: the best
@@ -106,6 +114,7 @@ struct Registration {
   std::optional<Parts> parts;              ///< as long as there is a transformation
   std::optional<Deformation> deformation;  ///< on top of the transformation; nothing: none
   std::optional<Uncertainty> uncertainty;  ///< nothing where too few blocks can be compared
+  std::optional<Heights> heights;          ///< as long as there is a transformation
   Evidence evidence;
   std::vector<Alternative> alternatives;  ///< of an ambiguous one, most significant first
 

@@ -54,7 +54,7 @@ class CasesTest(unittest.TestCase):
     def test_pairs_without_a_right_place_are_counted_apart(self):
         section = cases.section(read([
             made.line(), made.line(case_name="neg-mirrored-soybean", suite="locate", negative=1,
-                                   right=0, probability=0.7)]))
+                                   right=0, plane_probability=0.7)]))
         tables = {table.name: table.shown for table in section.tables}
         self.assertEqual(tables["refusals"]["accepted and wrong"].tolist(), [1])
         self.assertEqual(tables["kinds-paper"]["pairs"].tolist(), [1])
@@ -95,7 +95,7 @@ class PaperTest(unittest.TestCase):
 
 class ReportTest(unittest.TestCase):
     def test_writes_plots_tables_and_page_the_same_each_time(self):
-        lines = [made.line(suite=suite, setting=setting, seed=seed, method=method, probability=p,
+        lines = [made.line(suite=suite, setting=setting, seed=seed, method=method, plane_probability=p,
                            case_name="soybean", pose_mahalanobis2=3)
                  for suite in ("translation", "accuracy") for setting in (0, 0.05)
                  for seed, p in ((1, 0.9), (2, 0.4)) for method in ("default", "paper")]

@@ -38,7 +38,7 @@ class RowsTest(unittest.TestCase):
         self.assertEqual(sorted(names), sorted(rows.COLUMNS))
 
     def test_rows_of_earlier_sources_have_more_columns(self):
-        made.write(self.path, [made.line() + ",0,2.5,137,40"],
+        made.write(self.path, [made.line() + ",0,2.5,137,40,0.9"],
                    header=[*rows.COLUMNS, *rows.EARLIER])
         self.assertEqual(rows.read([self.path]).peak_mib.tolist(), [137])
         made.write(self.path, [made.line()])

@@ -80,6 +80,16 @@ Registration::Uncertainty uncertaintyOf(const Cloud& fixed, const pipeline::Regi
   return uncertainty;
 }
 
+Registration::Heights heightsOf(const verdict::HeightsVerdict& inside) {
+  Registration::Heights heights;
+  heights.measured = !inside.limited();
+  if (inside.limited()) heights.limit = toString(inside.limit);
+  heights.words = describe(inside);
+  heights.deviation_m = inside.deviation;
+  heights.bias_m = inside.bias;
+  return heights;
+}
+
 Registration::Evidence evidenceOf(const pipeline::Placed& placed) {
   Registration::Evidence evidence;
   evidence.significance = placed.evidence.significance;
@@ -121,12 +131,12 @@ Registration publicResult(const Cloud& fixed, const pipeline::Registration& foun
   result.status = statusOf(found.verdict.status);
   result.reasons = found.verdict.reasons;
   result.remedies = found.verdict.remedies;
-  result.probability = found.verdict.probability;
   result.plane_probability = found.verdict.plane_probability;
   result.place_probability = found.verdict.place_probability;
   if (found.transform) {
     result.fixed_from_moving = found.transform->fixed_from_moving;
     result.parts = partsOf(*found.transform);
+    result.heights = heightsOf(found.verdict.heights);
   }
   if (found.placed) {
     result.evidence = evidenceOf(*found.placed);

@@ -20,8 +20,8 @@ bool better(const Outcome& a, const Outcome& b) {
   if (rankOf(a.verdict.status) != rankOf(b.verdict.status)) {
     return rankOf(a.verdict.status) > rankOf(b.verdict.status);
   }
-  if (a.verdict.probability != b.verdict.probability) {
-    return a.verdict.probability > b.verdict.probability;
+  if (a.verdict.plane_probability != b.verdict.plane_probability) {
+    return a.verdict.plane_probability > b.verdict.plane_probability;
   }
   return significanceOf(a) > significanceOf(b);
 }

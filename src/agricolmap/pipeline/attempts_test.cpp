@@ -11,7 +11,7 @@ Outcome outcome(verdict::Status status, double significance, double rival = 0.0)
   Outcome made;
   made.placed.emplace();
   made.verdict.status = status;
-  made.verdict.probability = status == verdict::Status::kAccepted ? 0.9 : 0.4;
+  made.verdict.plane_probability = status == verdict::Status::kAccepted ? 0.9 : 0.4;
   made.placed->evidence.significance = significance;
   if (rival > 0.0) made.rivals = {{.significance = rival}};
   return made;

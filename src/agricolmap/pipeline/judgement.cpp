@@ -83,7 +83,7 @@ Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
         options.uncertainty.lean * map::canopyHeight(signals.moving().grid()));
     placed.uncertainty =
         verdict::estimateUncertainty(fixed, moving, pose, placed.evidence, space, systematic,
-                                     placed.heights.deviation(), options.uncertainty);
+                                     placed.heights_verdict.deviation, options.uncertainty);
   });
   return placed;
 }
@@ -109,6 +109,7 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
   }
   verdict::Finding finding{.evidence = placed.evidence,
                            .uncertainty = placed.uncertainty,
+                           .heights = placed.heights_verdict,
                            .overlap = placed.overlap,
                            .pose = placed.pose,
                            .rivals = {}};

@@ -24,6 +24,7 @@ struct Placed {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
   std::size_t placement = 0;  ///< index of the placement that it was refined from
   refine::VerticalResult heights;
+  verdict::HeightsVerdict heights_verdict;
   verdict::Evidence evidence;
   std::optional<verdict::PoseUncertainty> uncertainty;  ///< nothing when few blocks can be compared
   double overlap = 0.0;       ///< share of the moving map's cells that the fixed map sees

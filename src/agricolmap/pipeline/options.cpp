@@ -29,6 +29,10 @@ void listOptions(OptionTable& table, RegistrationOptions& options) {
       .basic();
   table.integer("seed", options.seed, 0, 2147483647, "", "what everything random follows from")
       .basic();
+  table
+      .flag("require_heights", options.require_heights,
+            "reject a place whose heights are limited, instead of saying so")
+      .basic();
   table.flag(
       "straighten", options.straighten,
       "lay a strip by its blocks where neighbouring ones are displaced alike, as by drift, if "

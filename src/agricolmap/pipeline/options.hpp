@@ -36,7 +36,8 @@ struct RegistrationOptions {
   RefineKind refine = RefineKind::kDense;
   DeformKind deform = DeformKind::kPath;
   int seed = 1;
-  bool straighten = true;  ///< lay strips that drift has bent by their blocks
+  bool require_heights = false;  ///< reject what is right in the plane but not in height
+  bool straighten = true;        ///< lay strips that drift has bent by their blocks
   PriorUncertainty prior;
   map::LevelOptions level;
   map::GridOptions grid;

@@ -209,6 +209,8 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
       options.prior.scale_unknown
           ? placeAtAnyScale(fixed, moving, guess, options, locator, monitor, maps)
           : std::pair(placeAlongPath(moving, path, options, locator, monitor, maps), 1.0);
+  // Only now: a search that found the place need not look for another one.
+  if (options.require_heights) verdict::requireHeights(outcome.verdict);
   return monitor.run(Stage::kCompose, [&] {
     return compose(fixed, moving, std::move(maps), std::move(outcome), scale, options);
   });

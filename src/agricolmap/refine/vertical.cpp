@@ -3,12 +3,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <tuple>
 #include <vector>
 
-#include "agricolmap/core/bilinear.hpp"
-#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/robust.hpp"
+#include "agricolmap/refine/canopy_lift.hpp"
+#include "agricolmap/refine/ground_cells.hpp"
 
 namespace agricolmap::refine {
 
@@ -45,112 +45,34 @@ constexpr double kUnsureResidual = 0.05;
 /// the fixed map seems too low: differences on the other side fade later, by this factor.
 constexpr double kCanopyBelow = 0.6;
 
-/// A cell that both maps see.
-struct Pair {
-  Eigen::Vector2d place;  ///< fixed frame [m], later relative to the middle
-  double difference;      ///< fixed − moving height [m]
-  double moving_canopy;   ///< height above the moving map's ground nearby [m]
-  double fixed_canopy;    ///< and above the fixed map's [m]
-  double fixed_ground;    ///< height of the latter [m]
-};
+/// Of Excess Green: a map whose cells differ by less from soil to plant does not tell them apart.
+constexpr float kContrast = 0.08F;
+/// Shares of the cells below which lies soil, and above which lie plants.
+constexpr double kSoilEnd = 0.02;
+constexpr double kPlantEnd = 0.98;
 
-/// Cells [row0, row1) × [col0, col1) of a map.
-struct Part {
-  int row0, row1, col0, col1;
-};
+/// Weight from which on a cell counts as ground where deviations are told.
+constexpr double kSurelyGround = 0.6;
+/// Weight of any cell where the tilt is told, beside 1 for ground.
+constexpr double kSurfaceWeight = 0.01;
+constexpr double kSurfaceRobust = 4.0;
+constexpr int kIterations = 20;
 
-/// Ground under each cell of a part: the 10th percentile of the seen heights in a window around it,
-/// from windows on a lattice, bilinear between them.
-class GroundModel {
- public:
-  GroundModel(const map::GridMap& map, const Part& part, double window)
-      : row0_(part.row0),
-        col0_(part.col0),
-        step_(std::max(1, static_cast<int>(std::lround(0.5 * window / map.frame.cell)))),
-        nodes_((part.row1 - part.row0) / step_ + 2, (part.col1 - part.col0) / step_ + 2,
-               std::numeric_limits<float>::quiet_NaN()) {
-    parallelFor(static_cast<std::size_t>(nodes_.rows()), [&](std::size_t row) {
-      const int r = static_cast<int>(row);
-      std::vector<float> heights;
-      for (int c = 0; c < nodes_.cols(); ++c) nodes_(r, c) = lowOf(map, r, c, heights);
-    });
-  }
-  /// NaN where no window around had enough cells.
-  double at(int row, int col) const {
-    const double v = static_cast<double>(row - row0_) / step_;
-    const double u = static_cast<double>(col - col0_) / step_;
-    return cellsClamped<double>(nodes_.rows(), nodes_.cols(), u, v).mean([&](int r, int c) {
-      return static_cast<double>(nodes_(r, c));
-    });
-  }
-
- private:
-  float lowOf(const map::GridMap& map, int r, int c, std::vector<float>& heights) const {
-    heights.clear();
-    const int y0 = std::max(0, row0_ + (r - 1) * step_);
-    const int y1 = std::min(map.frame.rows, row0_ + (r + 1) * step_);
-    const int x0 = std::max(0, col0_ + (c - 1) * step_);
-    const int x1 = std::min(map.frame.cols, col0_ + (c + 1) * step_);
-    for (int y = y0; y < y1; ++y) {
-      for (int x = x0; x < x1; ++x) {
-        if (map.valid(y, x)) heights.push_back(map.height(y, x));
-      }
-    }
-    if (heights.size() < 10) return std::numeric_limits<float>::quiet_NaN();
-    return quantile(heights, 0.1);
-  }
-
-  int row0_;
-  int col0_;
-  int step_;
-  Raster<float> nodes_;
-};
-
-/// The cells of the fixed map under the moving one.
-Part partUnder(const map::GridMap& fixed, const map::GridMap& moving, const Eigen::Affine2d& pose) {
-  Eigen::AlignedBox2d box;
-  for (const int r : {0, moving.frame.rows}) {
-    for (const int c : {0, moving.frame.cols}) {
-      box.extend(fixed.frame.cellOf(pose * moving.frame.centre(r, c)));
-    }
-  }
-  const auto within = [](double at, int count) {
-    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(count)));
-  };
-  return {within(box.min().y(), fixed.frame.rows), within(box.max().y() + 1.0, fixed.frame.rows),
-          within(box.min().x(), fixed.frame.cols), within(box.max().x() + 1.0, fixed.frame.cols)};
-}
-
-std::vector<Pair> overlap(const map::GridMap& fixed, const map::GridMap& moving,
-                          const Eigen::Affine2d& pose, double window) {
-  const GroundModel under_moving(moving, {0, moving.frame.rows, 0, moving.frame.cols}, window);
-  const GroundModel under_fixed(fixed, partUnder(fixed, moving, pose), window);
-  std::vector<Pair> pairs;
-  for (int r = 0; r < moving.frame.rows; r += 2) {
-    for (int c = 0; c < moving.frame.cols; c += 2) {
-      if (!moving.valid(r, c)) continue;
-      const Eigen::Vector2d place = pose * moving.frame.centre(r, c);
-      const Eigen::Vector2d cell = fixed.frame.cellOf(place);
-      const int fr = static_cast<int>(std::lround(cell.y()));
-      const int fc = static_cast<int>(std::lround(cell.x()));
-      if (!fixed.weight.contains(fr, fc) || !fixed.valid(fr, fc)) continue;
-      const auto here = static_cast<double>(moving.height(r, c));
-      const auto there = static_cast<double>(fixed.height(fr, fc));
-      const double here_canopy = here - under_moving.at(r, c);
-      const double there_canopy = there - under_fixed.at(fr, fc);
-      if (!std::isfinite(here_canopy) || !std::isfinite(there_canopy)) continue;
-      pairs.push_back({place, there - here, std::max(0.0, here_canopy), std::max(0.0, there_canopy),
-                       there - there_canopy});
-    }
-  }
-  return pairs;
-}
+/// Part of the lift that may be wrong: blur and gain are known to about so much.
+constexpr double kLiftDoubt = 0.35;
+/// Surfaces that correlate by less than the one say nothing of each other, and beyond the other
+/// all.
+constexpr double kUnlike = 0.2;
+constexpr double kLike = 0.4;
+/// Residuals beyond this many deviations do not tell whether the lift is followed.
+constexpr double kFollowed = 4.0;
 
 /// Weight of each pair as ground in both maps; `share` gets the share below the tolerance.
-std::vector<double> groundWeights(const std::vector<Pair>& pairs, double tolerance, double& share) {
+std::vector<double> groundWeights(const std::vector<GroundCell>& cells, double tolerance,
+                                  double& share) {
   std::vector<double> heights;
-  for (const Pair& pair : pairs) {
-    heights.push_back(std::hypot(pair.moving_canopy, pair.fixed_canopy));
+  for (const GroundCell& cell : cells) {
+    heights.push_back(std::hypot(cell.moving_canopy, cell.fixed_canopy));
   }
   const auto low = std::count_if(heights.begin(), heights.end(),
                                  [&](double height) { return height <= tolerance; });
@@ -167,112 +89,199 @@ std::vector<double> groundWeights(const std::vector<Pair>& pairs, double toleran
 double groundDeviation(const std::vector<double>& values, const std::vector<double>& weights) {
   std::vector<double> ground;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (weights[i] >= 0.6) ground.push_back(std::abs(values[i]));
+    if (weights[i] >= kSurelyGround) ground.push_back(std::abs(values[i]));
   }
-  return ground.empty() ? 0.0 : deviationFrom(ground);
+  return ground.empty() ? 0.0 : std::max(1e-4, deviationFrom(ground));
 }
 
-/// difference = o + s·place by iteratively reweighted least squares (Tukey) over the ground, with a
-/// pull of s towards 0 that only matters where the ground is too small to tell.
-Eigen::Vector3d fitPlane(const std::vector<Pair>& pairs, const std::vector<double>& ground,
-                         double robust, double& deviation) {
-  Eigen::Vector3d model = Eigen::Vector3d::Zero();
-  std::vector<double> residuals(pairs.size());
-  std::vector<double> weights = ground;
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    Eigen::Matrix3d normal = Eigen::Vector3d(0, 1e-2, 1e-2).asDiagonal();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Eigen::Vector3d row(1.0, pairs[i].place.x(), pairs[i].place.y());
-      normal += weights[i] * row * row.transpose();
-      right += weights[i] * pairs[i].difference * row;
+/// difference = plane · (1, x, y) for the ground.
+struct Tilted {
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+  double deviation = 0.0;  ///< robust, of the ground's residuals [m]
+
+  double residual(const GroundCell& cell, double difference) const {
+    return difference - plane[0] - plane.tail<2>().dot(cell.place);
+  }
+};
+
+/// The tilt, by iteratively reweighted least squares (Tukey) over the ground, and, where that is
+/// seen along a wheel track only and does not tell, over all of the surface, which may lie at
+/// another height. `of_ground`, `of_surface`: differences of heights as either is to be compared. A
+/// pull towards no tilt matters only where there is hardly anything to see.
+Tilted fitTilt(const std::vector<GroundCell>& cells, const std::vector<double>& ground,
+               const std::vector<double>& of_ground, const std::vector<double>& of_surface,
+               double robust) {
+  using Parameters = Eigen::Vector4d;  // height of the ground, of the surface; tilt
+  Tilted fit;
+  double surface = median(std::vector<double>(of_surface));
+  std::vector<double> on_ground(cells.size()), on_surface(cells.size());
+  std::vector<double> ground_weights = ground;
+  std::vector<double> surface_weights(cells.size(), kSurfaceWeight);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::Matrix4d normal = Eigen::Vector4d(1e-6, 1e-6, 1e-2, 1e-2).asDiagonal();
+    Parameters right = Parameters::Zero();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const Eigen::Vector2d& place = cells[i].place;
+      for (const auto& [weight, difference, row] :
+           {std::tuple(ground_weights[i], of_ground[i], Parameters(1, 0, place.x(), place.y())),
+            {surface_weights[i], of_surface[i], Parameters(0, 1, place.x(), place.y())}}) {
+        if (weight < 1e-6) continue;
+        normal += weight * row * row.transpose();
+        right += weight * difference * row;
+      }
     }
-    model = normal.ldlt().solve(right);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      residuals[i] = pairs[i].difference - model[0] - model.tail<2>().dot(pairs[i].place);
+    const Parameters found = normal.ldlt().solve(right);
+    fit.plane << found[0], found[2], found[3];
+    surface = found[1];
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      on_ground[i] = fit.residual(cells[i], of_ground[i]);
+      on_surface[i] = fit.residual(cells[i], of_surface[i]) + found[0] - surface;
     }
-    deviation = std::max(1e-4, groundDeviation(residuals, ground));
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const double side = residuals[i] > 0.0 ? kCanopyBelow : 1.0;
-      weights[i] = ground[i] * tukeyWeight(side * residuals[i] / (robust * deviation));
+    fit.deviation = groundDeviation(on_ground, ground);
+    std::vector<double> distances(on_surface);
+    for (double& distance : distances) distance = std::abs(distance);
+    const double spread = std::max(1e-4, deviationFrom(distances));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const double side = on_ground[i] > 0.0 ? kCanopyBelow : 1.0;
+      ground_weights[i] =
+          ground[i] < 1e-6
+              ? 0.0
+              : ground[i] * tukeyWeight(side * on_ground[i] / (robust * fit.deviation));
+      surface_weights[i] = kSurfaceWeight * tukeyWeight(on_surface[i] / (kSurfaceRobust * spread));
     }
   }
-  return model;
+  return fit;
 }
 
-/// Under a canopy without gaps the lowest cells of a map from afar are leaves, and those of one
-/// from near are not: the offset is then one between leaves and soil, and nothing in the heights
-/// tells. The surfaces, which both maps see, give another offset; where they do not contradict it,
-/// either is right.
-double doubtOf(const std::vector<Pair>& pairs, const VerticalResult& result) {
-  std::vector<double> differences;
-  differences.reserve(pairs.size());
-  for (const Pair& pair : pairs) {
-    differences.push_back(pair.difference - result.slope.dot(pair.place));
+double between(double value, double from, double to) {
+  return std::clamp((value - from) / (to - from), 0.0, 1.0);
+}
+
+/// What of the lift the differences follow, 0…1: nothing where the drone sees through gaps that
+/// the robot does not see whole. `weights`: of the ground.
+double followed(const std::vector<GroundCell>& cells, const std::vector<double>& differences,
+                const std::vector<double>& lift, const std::vector<double>& weights,
+                const Tilted& raw) {
+  double sum = 0.0, mean_lift = 0.0, mean_residual = 0.0;
+  std::vector<double> w(weights.size()), residuals(weights.size());
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    residuals[i] = raw.residual(cells[i], differences[i]);
+    w[i] = weights[i] * tukeyWeight(residuals[i] / (kFollowed * raw.deviation));
+    sum += w[i];
+    mean_lift += w[i] * lift[i];
+    mean_residual += w[i] * residuals[i];
   }
-  const auto between = [](double value, double from, double to) {
-    return std::clamp((value - from) / (to - from), 0.0, 1.0);
-  };
+  if (!(sum > 0.0)) return 0.0;
+  mean_lift /= sum;
+  mean_residual /= sum;
+  double product = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    product += w[i] * (lift[i] - mean_lift) * (residuals[i] - mean_residual);
+    square += w[i] * (lift[i] - mean_lift) * (lift[i] - mean_lift);
+  }
+  return square > 0.0 ? std::clamp(product / square, 0.0, 1.0) : 0.0;
+}
+
+/// VerticalResult::ground_seen.
+double groundSeen(const std::vector<GroundCell>& cells, const std::vector<double>& ground,
+                  const VerticalResult& result) {
+  std::vector<float> greenness;
+  greenness.reserve(cells.size());
+  for (const GroundCell& cell : cells) greenness.push_back(cell.greenness);
+  const float soil = quantile(greenness, kSoilEnd);
+  const float plant = quantile(greenness, kPlantEnd);
+  if (plant - soil >= kContrast) {
+    double all = 0.0, bare = 0.0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      all += ground[i];
+      if (cells[i].greenness < 0.5F * (soil + plant)) bare += ground[i];
+    }
+    return bare / all;
+  }
   const double hidden = between(result.ground_share, kClearGroundShare, kMinGroundShare);
   // Leaves are not flat.
   const double rough = between(result.residual, kFlatResidual, kRoughResidual);
-  return hidden * rough * std::abs(quantile(differences, 0.5) - result.offset);
+  return 1.0 - hidden * rough;
 }
 
-/// Least squares of the fixed map's canopy heights on the moving map's.
-double canopyGain(const std::vector<Pair>& pairs) {
-  double product = 0.0;
-  double square = 0.0;
-  for (const Pair& pair : pairs) {
-    product += pair.moving_canopy * pair.fixed_canopy;
-    square += pair.moving_canopy * pair.moving_canopy;
-  }
-  return square > 0.0 ? product / square : 1.0;
+double canopyOf(const std::vector<GroundCell>& cells) {
+  std::vector<double> heights;
+  heights.reserve(cells.size());
+  for (const GroundCell& cell : cells) heights.push_back(cell.moving_canopy);
+  return quantile(heights, 0.9);
 }
 
 /// How far the levelled planes, laid upon one another, may be from the registration's heights [m]:
 /// by their deviations, and by as much as the fixed map's lowest ground here is above its plane.
 double levelDeviation(const map::GridMap& fixed, const map::GridMap& moving,
-                      const std::vector<Pair>& pairs) {
+                      const std::vector<GroundCell>& cells) {
   std::vector<double> grounds;
-  grounds.reserve(pairs.size());
-  for (const Pair& pair : pairs) grounds.push_back(pair.fixed_ground);
+  grounds.reserve(cells.size());
+  for (const GroundCell& cell : cells) grounds.push_back(cell.fixed_ground);
   return std::hypot(fixed.ground_deviation, moving.ground_deviation,
                     quantile(grounds, kMinGroundShare));
 }
 
 }  // namespace
 
+double VerticalResult::bias() const {
+  const double unseen = 1.0 - ground_seen;
+  // Squared: cells that are a little greener than soil are gaps that a leaf reaches into.
+  return std::hypot(kLiftDoubt * lift, unseen * unseen * canopy);
+}
+
 VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving,
                            const Eigen::Affine2d& fixed_from_moving,
                            const VerticalOptions& options) {
   VerticalResult result;
-  std::vector<Pair> pairs = overlap(fixed, moving, fixed_from_moving, options.ground_window);
-  result.cells = pairs.size();
-  if (pairs.size() < kMinCells) return result;
+  const GroundModel under_moving(moving, {0, moving.frame.rows, 0, moving.frame.cols},
+                                 options.ground_window);
+  std::vector<GroundCell> cells =
+      groundCells(fixed, moving, under_moving, fixed_from_moving, options.ground_window);
+  result.cells = cells.size();
+  if (cells.size() < kMinCells) return result;
   const std::vector<double> ground =
-      groundWeights(pairs, options.ground_tolerance, result.ground_share);
+      groundWeights(cells, options.ground_tolerance, result.ground_share);
   double sum = 0.0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    result.about += ground[i] * pairs[i].place;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    result.about += ground[i] * cells[i].place;
     sum += ground[i];
   }
   result.about /= sum;
-  for (Pair& pair : pairs) pair.place -= result.about;
-  const Eigen::Vector3d model = fitPlane(pairs, ground, options.robust, result.residual);
-  result.offset = model[0];
-  result.slope = model.tail<2>();
-  result.canopy_gain = canopyGain(pairs);
+  for (GroundCell& cell : cells) cell.place -= result.about;
+  std::vector<double> differences;
+  differences.reserve(cells.size());
+  for (const GroundCell& cell : cells) differences.push_back(cell.difference);
+  const Tilted raw = fitTilt(cells, ground, differences, differences, options.robust);
+  result.residual = raw.deviation;
+  result.canopy = canopyOf(cells);
+  result.ground_seen = groundSeen(cells, ground, result);
+  result.relief = map::hasRelief(fixed) && map::hasRelief(moving);
   // Where a canopy hides the ground from the cells, the planes that levelling found from the points
   // may tell more.
-  const double level = levelDeviation(fixed, moving, pairs);
+  const double level = levelDeviation(fixed, moving, cells);
   if (result.ground_share < kMinGroundShare && result.residual > kUnsureResidual &&
       level < result.residual) {
-    result.offset = 0.0;
-    result.slope.setZero();
     result.residual = level;
+  } else {
+    const CanopyLift canopy =
+        predictLift(fixed, moving, under_moving, fixed_from_moving, cells, raw.plane, result.about);
+    result.blur = canopy.blur;
+    result.canopy_gain = canopy.gain;
+    // Surfaces that have nothing in common predict nothing.
+    const double share = followed(cells, differences, canopy.lift, ground, raw) *
+                         between(canopy.correlation, kUnlike, kLike);
+    std::vector<double> of_ground = differences, of_surface = differences;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      of_ground[i] -= share * canopy.lift[i];
+      of_surface[i] -= canopy.lift[i];
+    }
+    const Tilted fit = fitTilt(cells, ground, of_ground, of_surface, options.robust);
+    result.offset = fit.plane[0];
+    result.slope = fit.plane.tail<2>();
+    result.residual = fit.deviation;
+    result.lift = raw.plane[0] - fit.plane[0];
   }
-  result.doubt = doubtOf(pairs, result);
   result.status =
       result.slope.norm() > options.max_slope ? VerticalStatus::kTooSteep : VerticalStatus::kOk;
   return result;

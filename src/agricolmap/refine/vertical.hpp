@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/map/grid_map.hpp"
@@ -28,23 +27,33 @@ struct VerticalResult {
   double offset = 0.0;                              ///< at `about` [m]
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< [m/m]
   Eigen::Vector2d about = Eigen::Vector2d::Zero();  ///< middle of the overlap [m]
-  double canopy_gain =
-      1.0;                ///< how tall the fixed map sees what the moving map sees as 1 m of canopy
+  bool relief = false;                              ///< whether both maps have heights at all
+  /// How tall the fixed map sees what the moving map sees as 1 m of canopy.
+  double canopy_gain = 1.0;
+  double canopy = 0.0;    ///< height over the moving map's ground that a tenth of the cells surpass
+  double blur = 0.0;      ///< of the fixed surface against the moving one, deviation [m]
   double residual = 0.0;  ///< robust deviation of the ground cells from the model [m]
   std::size_t cells = 0;  ///< cells that both maps see
-  double ground_share = 0.0;  ///< of these, the share that is ground in both maps
-  /// By how much the offset would be another one if the maps' surfaces were one, and not their
-  /// grounds, as far as the ground is hidden [m].
-  double doubt = 0.0;
+  double ground_share = 0.0;  ///< of these, the share that is low in both maps
+  /// Of the lowest cells, the share that is ground: that has the colour of soil and not of plants,
+  /// or, without colours that differ, as far as so many low cells that fit so well can be leaves.
+  double ground_seen = 0.0;
+  double lift = 0.0;  ///< by how much blurred plants lift the fixed map's ground, taken off [m]
 
-  /// Deviation of the height [m]: scatter of the ground, and the doubt what is ground.
-  double deviation() const { return std::hypot(residual, doubt / std::numbers::sqrt2); }
+  /// How wrong the offset may be for reasons that all cells have in common [m]: the lift that was
+  /// taken off is known to a third, and lowest cells that are no ground may be as high above it as
+  /// plants are.
+  double bias() const;
+  /// Deviation of the height [m]: the scatter of the ground, and the bias.
+  double deviation() const { return std::hypot(residual, bias()); }
 };
 
-/// Offset and tilt from the cells that are ground in both maps. A leaf over a cell lifts it in one
-/// map more than in the other, by tens of centimetres in tall crops; where both see the soil, the
-/// difference of heights is the registration's (simulated crops: within 2 cm). Under a canopy
-/// without gaps, the lowest cells stand for the ground, and `ground_share` is small.
+/// Offset and tilt from the cells that are low in both maps. A leaf over a cell lifts it in one map
+/// more than in the other, by tens of centimetres in tall crops; where both see the soil, the
+/// difference of heights is the registration's. Where gaps are narrow a drone's blur lifts them:
+/// the robot's own surface, blurred as much, tells by how much (see CanopyLift), and the part of
+/// that which the differences follow is taken off. Where the robot sees no ground either, nothing
+/// tells, and `bias` says so.
 VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving,
                            const Eigen::Affine2d& fixed_from_moving,
                            const VerticalOptions& options);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace agricolmap::verdict {
 namespace {
@@ -36,12 +35,6 @@ double withinLimit(double expected) {
   return 1.0 - std::exp(-half) * (1.0 + half);
 }
 
-/// Of one normal error being within the limit.
-double heightWithinLimit(double deviation) {
-  if (!(deviation >= 0.0)) return 0.0;
-  return std::erf(kLimit / (std::numbers::sqrt2 * std::max(deviation, 1e-6)));
-}
-
 }  // namespace
 
 VerdictFeatures verdictFeatures(const VerdictFacts& facts) {
@@ -70,10 +63,6 @@ double placeProbability(const VerdictFacts& facts) {
 double planeProbability(const VerdictFacts& facts) {
   return placeProbability(facts) *
          withinLimit(std::hypot(facts.expected_rms, kLocalShare * facts.local_rms));
-}
-
-double rightProbability(const VerdictFacts& facts) {
-  return planeProbability(facts) * heightWithinLimit(facts.height_deviation);
 }
 
 }  // namespace agricolmap::verdict

@@ -1,5 +1,6 @@
-// The probability that a registration is right: that it is the right place, from the evidence,
-// times that of being within 5 cm there, from the errors that it states of itself.
+// The probability that a registration is right in the plane: that it is the right place, from the
+// evidence, times that of being within 5 cm there, from the errors that it states of itself.
+// Heights have a verdict of their own (heights.hpp).
 //
 // The first is a logistic regression whose weights `experiments/calibrate` finds on pairs with
 // known truth (docs/campaign-suites.md); the second follows from the stated errors, so that the two
@@ -19,10 +20,9 @@ struct VerdictFacts {
   double decoy = 0.0;         ///< significance over that of the best decoy
   double agreeing = 0.0;      ///< blocks
   double blocks = 0.0;
-  double expected_rms = 0.0;      ///< see PoseUncertainty [m]
-  double local_rms = 0.0;         ///< see PoseUncertainty [m]
-  double height_deviation = 0.0;  ///< see PoseUncertainty [m]
-  double overlap = 0.0;           ///< share of the moving map that the fixed map sees
+  double expected_rms = 0.0;  ///< see PoseUncertainty [m]
+  double local_rms = 0.0;     ///< see PoseUncertainty [m]
+  double overlap = 0.0;       ///< share of the moving map that the fixed map sees
 };
 
 inline constexpr std::size_t kVerdictFeatures = 6;
@@ -39,7 +39,5 @@ VerdictFeatures verdictFeatures(const VerdictFacts& facts);
 double placeProbability(const VerdictFacts& facts);
 /// Of being within 5 cm RMS of the truth in the plane, whatever the height.
 double planeProbability(const VerdictFacts& facts);
-/// Of being so in the plane and in height.
-double rightProbability(const VerdictFacts& facts);
 
 }  // namespace agricolmap::verdict

@@ -25,7 +25,6 @@ VerdictFacts drawFacts(Random& random) {
           .blocks = blocks,
           .expected_rms = random.uniform(0.005, 0.1),
           .local_rms = random.uniform(0.005, 0.1),
-          .height_deviation = random.uniform(0.005, 0.2),
           .overlap = random.uniform(0.1, 1.0)};
 }
 
@@ -54,14 +53,8 @@ TEST(Probability, AStatedErrorAboveTheLimitIsNeverWithinIt) {
                      .blocks = 16.0,
                      .expected_rms = 0.005,
                      .local_rms = 0.005,
-                     .height_deviation = 0.01,
                      .overlap = 1.0};
   EXPECT_GT(planeProbability(facts), 0.95);
-  EXPECT_GT(rightProbability(facts), 0.95);
-  // A plane that is right says nothing of heights.
-  facts.height_deviation = 0.1;
-  EXPECT_GT(planeProbability(facts), 0.95);
-  EXPECT_LT(rightProbability(facts), 0.5);
   facts.expected_rms = 0.06;
   EXPECT_LT(planeProbability(facts), 0.5);
   facts.expected_rms = std::numeric_limits<double>::quiet_NaN();

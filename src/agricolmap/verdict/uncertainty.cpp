@@ -105,7 +105,7 @@ double expectedOver(const std::vector<BlockShift>& strip, const std::vector<Bloc
 
 std::optional<PoseUncertainty> estimateUncertainty(
     const map::SignalMap& fixed, const map::SignalMap& moving, const Eigen::Affine2d& pose,
-    const Evidence& evidence, const SearchSpace& space, double systematic, double height_residual,
+    const Evidence& evidence, const SearchSpace& space, double systematic, double height_deviation,
     const UncertaintyOptions& options) {
   if (evidence.block_side <= 0.0) return std::nullopt;
   std::vector<BlockShift> strip = shiftBlocks(fixed, moving, pose, evidence.block_side);
@@ -154,8 +154,7 @@ std::optional<PoseUncertainty> estimateUncertainty(
   result.systematic_rms = systematic;
   result.covariance.diagonal().head<2>().array() += 0.5 * systematic * systematic;
   result.expected_rms = expectedOver(strip, blocks, result);
-  result.height_deviation =
-      std::hypot(options.height_floor, options.height_inflation * height_residual);
+  result.height_deviation = height_deviation;
   return result;
 }
 

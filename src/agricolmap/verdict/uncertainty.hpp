@@ -60,10 +60,10 @@ Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix
 
 /// Nothing when too few blocks can be compared. `fixed`, `moving`: of the same cell size, fine
 /// enough for centimetres. `systematic`: error that all blocks may have in common,
-/// `height_residual`: deviation of the ground's heights [m].
+/// `height_deviation`: what is stated of the height [m].
 std::optional<PoseUncertainty> estimateUncertainty(
     const map::SignalMap& fixed, const map::SignalMap& moving, const Eigen::Affine2d& pose,
-    const Evidence& evidence, const SearchSpace& space, double systematic, double height_residual,
+    const Evidence& evidence, const SearchSpace& space, double systematic, double height_deviation,
     const UncertaintyOptions& options);
 
 }  // namespace agricolmap::verdict

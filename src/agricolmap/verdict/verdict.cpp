@@ -46,6 +46,25 @@ void listOptions(OptionTable& table, VerdictOptions& options) {
                "how far beyond the prior's limit the heading may come out");
 }
 
+std::string headline(const Verdict& verdict) {
+  if (verdict.status != Status::kAccepted || !verdict.heights.limited()) {
+    return toString(verdict.status);
+  }
+  return fmt::format("{} in the plane, heights limited: {}", toString(verdict.status),
+                     describe(verdict.heights));
+}
+
+void requireHeights(Verdict& verdict) {
+  if (verdict.status != Status::kAccepted || !verdict.heights.limited()) return;
+  verdict.status = Status::kRejected;
+  verdict.reasons.insert(
+      verdict.reasons.begin(),
+      fmt::format("heights are required, and limited: {}; in the plane it would be accepted",
+                  describe(verdict.heights)));
+  verdict.remedies.emplace_back(
+      "map wheel tracks, gaps or the field's edge, too, where both maps see soil");
+}
+
 Verdict rejectBecause(std::string reason) { return {Status::kRejected, {std::move(reason)}}; }
 
 namespace {
@@ -148,7 +167,7 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
   return against;
 }
 
-std::vector<std::string> support(const Finding& finding, double plane, double all) {
+std::vector<std::string> support(const Finding& finding, double plane) {
   const Evidence& evidence = finding.evidence;
   std::string peak =
       fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness);
@@ -160,19 +179,20 @@ std::vector<std::string> support(const Finding& finding, double plane, double al
       peak,
       fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
                   evidence.blocks.size()),
-      fmt::format("the probability of the right place (within 5 cm in the plane) is {}, "
-                  "heights included {}",
-                  percent(plane), percent(all))};
+      fmt::format("the probability of the right place (within 5 cm in the plane) is {}",
+                  percent(plane))};
   if (!evidence.parts.displaced.empty()) {
     reasons.push_back(fmt::format("{}: {:.1f} cm RMS of the whole", describe(evidence.parts),
                                   100 * evidence.parts.rms));
   }
   if (finding.uncertainty) {
     const PoseUncertainty& error = *finding.uncertainty;
-    reasons.push_back(fmt::format(
-        "expected error {:.1f} cm RMS in the plane ({:.1f} cm of it systematic) and {:.1f} cm in "
-        "height",
-        100 * error.expected_rms, 100 * error.systematic_rms, 100 * error.height_deviation));
+    reasons.push_back(
+        fmt::format("expected error {:.1f} cm RMS in the plane ({:.1f} cm of it systematic){}",
+                    100 * error.expected_rms, 100 * error.systematic_rms,
+                    std::isfinite(error.height_deviation)
+                        ? fmt::format(" and {:.1f} cm in height", 100 * error.height_deviation)
+                        : std::string()));
     reasons.push_back(fmt::format("{:.1f} cm of local deformation remain that no affine undoes",
                                   100 * error.local_rms));
   }
@@ -192,19 +212,17 @@ VerdictFacts factsOf(const Finding& finding) {
           .blocks = static_cast<double>(evidence.blocks.size()),
           .expected_rms = uncertainty ? uncertainty->expected_rms : unknown,
           .local_rms = uncertainty ? uncertainty->local_rms : unknown,
-          .height_deviation = uncertainty ? uncertainty->height_deviation : unknown,
           .overlap = finding.overlap};
 }
 
 Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options) {
   std::vector<std::string> against = contradictions(finding, space, options);
-  if (!against.empty()) return {Status::kRejected, std::move(against)};
+  if (!against.empty()) return {Status::kRejected, std::move(against), 0.0, 0.0, finding.heights};
   const Evidence& evidence = finding.evidence;
   const VerdictFacts facts = factsOf(finding);
   // Whatever the whole says, no pose lays a strip right whose parts do not lie as one.
   const bool apart = evidence.parts.apart();
   const double together = apart ? evidence.parts.probability : 1.0;
-  const double all = together * rightProbability(facts);
   const double plane = together * planeProbability(facts);
   const double place = placeProbability(facts);
   const auto rivals = std::count_if(
@@ -218,14 +236,14 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
             {fmt::format("{} places fit about equally well, and the data cannot tell them apart; "
                          "a better initial guess can",
                          rivals + 1)},
-            std::min(all, share),
             std::min(plane, share),
-            std::min(place, share)};
+            std::min(place, share),
+            finding.heights};
   }
   if (apart || plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
-    return {Status::kRejected, doubts(finding, plane, options), all, plane, place};
+    return {Status::kRejected, doubts(finding, plane, options), plane, place, finding.heights};
   }
-  return {Status::kAccepted, support(finding, plane, all), all, plane, place};
+  return {Status::kAccepted, support(finding, plane), plane, place, finding.heights};
 }
 
 }  // namespace agricolmap::verdict

@@ -9,6 +9,7 @@
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/verdict/evidence.hpp"
+#include "agricolmap/verdict/heights.hpp"
 #include "agricolmap/verdict/probability.hpp"
 #include "agricolmap/verdict/uncertainty.hpp"
 
@@ -31,10 +32,10 @@ void listOptions(OptionTable& table, VerdictOptions& options);
 
 struct Verdict {
   Status status = Status::kRejected;
-  std::vector<std::string> reasons;        ///< why, in plain words; never empty
-  double probability = 0.0;                ///< calibrated, that the result is within 5 cm RMS
-  double plane_probability = 0.0;          ///< that it is so in the plane, whatever the height
-  double place_probability = 0.0;          ///< that it is the right place, however exact
+  std::vector<std::string> reasons;  ///< why, in plain words; never empty
+  double plane_probability = 0.0;    ///< that the result is within 5 cm RMS in the plane
+  double place_probability = 0.0;    ///< calibrated, that it is the right place, however exact
+  HeightsVerdict heights = {};       ///< of the height, which the status does not hang on
   std::vector<std::string> remedies = {};  ///< what may help; empty when accepted
 };
 
@@ -42,6 +43,7 @@ struct Verdict {
 struct Finding {
   Evidence evidence;
   std::optional<PoseUncertainty> uncertainty;
+  HeightsVerdict heights = {};
   double overlap = 0.0;  ///< share of the moving map's cells that the fixed map sees
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
   std::vector<double> rivals;  ///< significances of the other distinct placements
@@ -51,6 +53,13 @@ struct Finding {
 VerdictFacts factsOf(const Finding& finding);
 
 Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOptions& options);
+
+/// The status, and with it that heights are limited where the place is accepted: the first line of
+/// what is told of a registration.
+std::string headline(const Verdict& verdict);
+
+/// Rejects what is accepted in the plane with limited heights.
+void requireHeights(Verdict& verdict);
 
 /// The verdict on a pair for which a stage found no answer at all.
 Verdict rejectBecause(std::string reason);

@@ -137,7 +137,10 @@ Json residualsJson(const pipeline::Registration& registration) {
                       {"residual_m", number(vertical.residual)},
                       {"cells", vertical.cells},
                       {"ground_share", number(vertical.ground_share)},
-                      {"doubt_m", number(vertical.doubt)},
+                      {"ground_seen", number(vertical.ground_seen)},
+                      {"lift_m", number(vertical.lift)},
+                      {"blur_m", number(vertical.blur)},
+                      {"canopy_m", number(vertical.canopy)},
                       {"canopy_gain", number(vertical.canopy_gain)}};
   return json;
 }
@@ -175,6 +178,20 @@ Json evidenceJson(const verdict::Evidence& evidence) {
   }
   json["blocks"] = std::move(blocks);
   json["parts"] = partsJson(evidence.parts);
+  return json;
+}
+
+Json heightsJson(const pipeline::Registration& registration) {
+  if (!registration.transform.has_value()) return nullptr;
+  const verdict::HeightsVerdict& heights = registration.verdict.heights;
+  Json json;
+  json["status"] = toString(heights.status);
+  json["limit"] = heights.limited() ? Json(toString(heights.limit)) : Json(nullptr);
+  json["words"] = describe(heights);
+  json["deviation_m"] = number(heights.deviation);
+  json["bias_m"] = number(heights.bias);
+  // Growth and what a drone loses of a canopy look the same as another scale.
+  json["vertical_scale"] = "assumed";
   return json;
 }
 
@@ -296,9 +313,10 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["reasons"] = stringsJson(registration.verdict.reasons);
   json["remedies"] = stringsJson(registration.verdict.remedies);
   json["warnings"] = stringsJson(warningsOf(fixed, moving, monitor));
-  json["probability"] = number(registration.verdict.probability);
+  json["probability"] = number(registration.verdict.plane_probability);
   json["plane_probability"] = number(registration.verdict.plane_probability);
   json["place_probability"] = number(registration.verdict.place_probability);
+  json["heights"] = heightsJson(registration);
   json["transform"] = transformJson(fixed, moving, registration);
   json["uncertainty"] = uncertaintyJson(fixed, registration);
   json["deformation"] = deformationJson(moving, registration);

@@ -111,6 +111,21 @@ TEST(RegistrationJson, SaysWhichPartsLieElsewhere) {
                                       {"uniqueness", 2.5}}}));
 }
 
+TEST(RegistrationJson, SaysWhetherHeightsAreLimitedAndWhy) {
+  pipeline::Registration registration = testing::testRegistration();
+  registration.verdict.heights = {.status = verdict::HeightsStatus::kMeasured, .deviation = 0.014};
+  Json heights = reportOf(registration)["heights"];
+  EXPECT_EQ(heights["status"], "measured");
+  EXPECT_TRUE(heights["limit"].is_null());
+  EXPECT_EQ(heights["deviation_m"], 0.014);
+  EXPECT_EQ(heights["vertical_scale"], "assumed");
+  registration.verdict.heights = {.limit = verdict::HeightsLimit::kFlat};
+  heights = reportOf(registration)["heights"];
+  EXPECT_EQ(heights["status"], "limited");
+  EXPECT_EQ(heights["limit"], "flat");
+  EXPECT_TRUE(heights["deviation_m"].is_null());
+}
+
 TEST(RegistrationJson, MatricesRoundTripToTheLastBit) {
   const pipeline::Registration registration = testing::testRegistration();
   const Json json = reportOf(registration);

@@ -76,13 +76,14 @@ void drawBlock(PictureCanvas& canvas, const Scene& scene, const View& view,
 
 std::vector<std::pair<std::string, std::string>> figures(const pipeline::Registration& result) {
   const verdict::Evidence& evidence = result.placed->evidence;
-  return {
-      {"blocks that agree", fmt::format("{} of {}", evidence.agreeing, evidence.blocks.size())},
-      {"uniqueness (peak / next peak)", fmt::format("{:.2f}", evidence.uniqueness)},
-      {"significance (peak / deviation)", fmt::format("{:.1f}", evidence.significance)},
-      {"probability of being right", fmt::format("{:.1f} %", 100.0 * result.verdict.probability)},
-      {"overlap", fmt::format("{:.0f} %", 100.0 * result.placed->overlap)},
-      {"correlation", fmt::format("{:.2f}", result.placed->correlation)}};
+  return {{"blocks that agree", fmt::format("{} of {}", evidence.agreeing, evidence.blocks.size())},
+          {"uniqueness (peak / next peak)", fmt::format("{:.2f}", evidence.uniqueness)},
+          {"significance (peak / deviation)", fmt::format("{:.1f}", evidence.significance)},
+          {"probability of being right",
+           fmt::format("{:.1f} %", 100.0 * result.verdict.plane_probability)},
+          {"heights", toString(result.verdict.heights.status)},
+          {"overlap", fmt::format("{:.0f} %", 100.0 * result.placed->overlap)},
+          {"correlation", fmt::format("{:.2f}", result.placed->correlation)}};
 }
 
 const char* headline(verdict::Status status) {
