@@ -93,7 +93,7 @@ std::optional<Anchor> placeAnchor(const PairMaps& maps, const deform::Path& path
   std::optional<Anchor> best;
   // A piece is short: what bends it is not worth the time here.
   RegistrationOptions stiff = options;
-  stiff.deform.kind = deform::DeformKind::kNone;
+  stiff.deform = DeformKind::kNone;
   for (const double along : anchorsOf(path, moving, options)) {
     const std::optional<PairMaps> piece = mapsOfPiece(maps, path, along, options);
     if (!piece) continue;
