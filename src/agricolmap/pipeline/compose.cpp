@@ -1,8 +1,5 @@
 #include "agricolmap/pipeline/compose.hpp"
 
-#include <Eigen/Cholesky>
-#include <algorithm>
-
 namespace agricolmap::pipeline {
 namespace {
 
@@ -26,40 +23,14 @@ class FrameChange {
   const PairFrames& frames_;
 };
 
-/// The horizontal pose that comes nearest to laying the moving cloud straight and then by `pose`.
-Eigen::Affine2d nearestPose(const Cloud& moving, const PairMaps& maps,
-                            const Eigen::Affine2d& pose) {
-  if (!maps.bend) return pose;
-  constexpr std::size_t kSamples = 20'000;
-  const std::size_t stride = std::max<std::size_t>(1, moving.size() / kSamples);
-  const Eigen::Vector2d about = maps.space.centre;
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
-  for (std::size_t i = 0; i < moving.size(); i += stride) {
-    const Eigen::Vector3d point = maps.frames.levelled_from_moving * moving.xyz[i].cast<double>();
-    const Eigen::Vector3d row(point.x() - about.x(), point.y() - about.y(), 1.0);
-    const Eigen::Vector2d bent = maps.bend->bent(point).head<2>();
-    normal += row * row.transpose();
-    right += row * (pose * bent).transpose();
-  }
-  const Eigen::Matrix<double, 3, 2> fit = normal.ldlt().solve(right);
-  Eigen::Affine2d nearest = Eigen::Affine2d::Identity();
-  nearest.linear() = fit.topRows<2>().transpose();
-  nearest.translation() = fit.row(2).transpose() - nearest.linear() * about;
-  return nearest;
-}
-
-Transform transformOf(const Cloud& fixed, const Cloud& moving, const PairMaps& maps,
-                      const FrameChange& change, const Placed& placed, double scale) {
-  const Eigen::Affine2d pose = nearestPose(moving, maps, placed.pose);
-  const Eigen::Affine3d levelled = refine::liftPose(pose, placed.heights);
+Transform transformOf(const Cloud& fixed, const PairMaps& maps, const FrameChange& change,
+                      const Placed& placed, double scale) {
+  const Eigen::Affine3d levelled = refine::liftPose(placed.pose, placed.heights);
   Transform transform;
-  transform.fixed_from_bent =
-      change.inFiles(change.local(refine::liftPose(placed.pose, placed.heights)));
   transform.local_fixed_from_moving = change.local(levelled);
   transform.fixed_from_moving = change.inFiles(transform.local_fixed_from_moving);
   const Eigen::Matrix2d& axes = maps.space.scale_axes;
-  transform.parts = splitHorizontal(axes.transpose() * pose.linear() * axes);
+  transform.parts = splitHorizontal(axes.transpose() * placed.pose.linear() * axes);
   transform.parts.scale_x *= scale;
   transform.parts.scale_y *= scale;
   transform.vertical_scale = scale;
@@ -96,7 +67,7 @@ Registration compose(const Cloud& fixed, const Cloud& moving, PairMaps maps, Out
   Registration result;
   if (outcome.placed) {
     const FrameChange change(fixed, moving, maps.frames);
-    result.transform = transformOf(fixed, moving, maps, change, *outcome.placed, scale);
+    result.transform = transformOf(fixed, maps, change, *outcome.placed, scale);
     result.alternatives = alternativesTo(outcome, maps, change, options);
   }
   result.verdict = std::move(outcome.verdict);

@@ -71,15 +71,11 @@ Eigen::Vector3d Displacement::inFile(const Eigen::Vector3d& levelled) const {
 }
 
 Eigen::Vector3d Displacement::at(const Eigen::Vector3d& moving_point) const {
-  Eigen::Vector3d straight = levelled_from_moving_ * moving_point;
-  if (registration_.maps.bend) straight = registration_.maps.bend->bent(straight);
-  if (registration_.placed->followed) {
-    const deform::Bend& bend = registration_.placed->followed->bend;
-    straight = deform::unbent(straight, bend.deformation, bend.pose);
-  }
-  const Eigen::Vector3d place =
-      registration_.transform->fixed_from_bent * (levelled_from_moving_.inverse() * straight);
-  return place - registration_.transform->fixed_from_moving * moving_point;
+  const Placed& placed = *registration_.placed;
+  const deform::Bend& bend = placed.followed->bend;
+  const Eigen::Vector3d point = levelled_from_moving_ * moving_point;
+  const Eigen::Vector3d straight = deform::unbent(point, bend.deformation, bend.pose);
+  return inFile(refine::liftPose(placed.pose, placed.heights).linear() * (straight - point));
 }
 
 Eigen::Vector3d Displacement::place(const Eigen::Vector3d& moving_point) const {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +27,12 @@ constexpr double kTwiceShare = 0.3;
 constexpr double kSide = 4.0;
 /// Rivals of a long strip are looked for so far from it at most [m].
 constexpr double kMostAside = 10.0;
+/// What the place of a piece is off by [m].
+constexpr double kPieceDeviation = 0.005;
+/// Where a spline takes over from the pieces: samples for each of its nodes, and how little holds
+/// it where there are none.
+constexpr int kSamplesPerNode = 6;
+constexpr double kSlackOfSpline = 1e-6;
 /// Fewer pieces tell no bend in height.
 constexpr std::size_t kLeastLifted = 4;
 
@@ -271,6 +278,61 @@ std::vector<FollowedPieces> followFrom(const std::vector<Eigen::Affine2d>& poses
     all.front().joined = pieces::joined(all.front().chain, path, half_width);
   }
   return all;
+}
+
+void followPieces(const FollowedPieces& followed, const deform::Path& path,
+                  const map::GridMap& straight, const RegistrationOptions& options,
+                  Placed& placed) {
+  // The stated error of places along the strip needs that of the whole.
+  if (!placed.uncertainty) return;
+  const Eigen::Affine2d& pose = placed.pose;
+  const deform::Bend* more = placed.followed ? &placed.followed->bend : nullptr;
+  const auto displacementAt = [&](double along) {
+    const Eigen::Vector2d on_path = path.point(along);
+    const Eigen::Vector3d point(on_path.x(), on_path.y(), 0.0);
+    Eigen::Vector3d laid = followed.joined->bend.bent(point);
+    if (more != nullptr) laid = deform::unbent(laid, more->deformation, more->pose);
+    Eigen::Vector3d displacement = laid - point;
+    displacement.head<2>() = pose.linear() * displacement.head<2>();
+    return displacement;
+  };
+  const deform::SplineBasis basis(path.length(), options.bend.node);
+  const int samples = kSamplesPerNode * basis.size();
+  Eigen::MatrixXd normal = kSlackOfSpline * Eigen::MatrixXd::Identity(basis.size(), basis.size());
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(basis.size(), 3);
+  double sum2 = 0.0, most = 0.0;
+  for (int k = 0; k <= samples; ++k) {
+    const double along = path.length() * k / samples;
+    const deform::SplineBasis::At at = basis.at(along);
+    const Eigen::Vector3d displacement = displacementAt(along);
+    for (int i = 0; i < 4; ++i) {
+      right.row(at.first + i) += at.value[i] * displacement.transpose();
+      for (int j = 0; j < 4; ++j) normal(at.first + i, at.first + j) += at.value[i] * at.value[j];
+    }
+    sum2 += displacement.head<2>().squaredNorm();
+    most = std::max(most, displacement.head<2>().norm());
+  }
+  Eigen::Matrix2d turn = pose.linear();
+  turn.colwise().normalize();
+  deform::Bend bend{deform::Deformation(path, turn, basis), pose};
+  bend.deformation.coefficients = normal.ldlt().solve(right);
+  bend.deformation.covariance = kPieceDeviation * kPieceDeviation *
+                                Eigen::MatrixXd::Identity(2 * basis.size(), 2 * basis.size());
+  bend.deformation.height_deviation = kPieceDeviation;
+  bend.rms = std::sqrt(sum2 / (samples + 1));
+  bend.most = most;
+  if (more != nullptr) bend.gain = more->gain;
+  map::GridMap map = more != nullptr ? std::move(placed.followed->straight) : straight;
+  placed.followed = Followed{std::move(bend), std::move(map)};
+}
+
+std::string describe(const FollowedPieces& followed) {
+  const auto held = std::count_if(followed.chain.begin(), followed.chain.end(),
+                                  [](const pieces::PiecePose& piece) { return piece.held; });
+  return fmt::format(
+      "{} of {} pieces of the path were found one after the other; together they bend the strip by "
+      "up to {:.2f} m",
+      held, followed.chain.size(), followed.joined->largest);
 }
 
 std::optional<LostEnd> lostEnd(const FollowedPieces& followed, const deform::Path& path,

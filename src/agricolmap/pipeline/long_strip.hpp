@@ -9,6 +9,7 @@
 
 #include "agricolmap/core/monitor.hpp"
 #include "agricolmap/pieces/chain.hpp"
+#include "agricolmap/pipeline/judgement.hpp"
 #include "agricolmap/pipeline/maps.hpp"
 
 namespace agricolmap::pipeline {
@@ -47,6 +48,13 @@ struct FollowedPieces {
 std::vector<FollowedPieces> followFrom(const std::vector<Eigen::Affine2d>& poses,
                                        const refine::PairSignals& signals, const deform::Path& path,
                                        double along, const RegistrationOptions& options);
+
+/// Makes what the pieces bend by, and what was followed of the straight strip on top of it, one
+/// deformation of the strip as it is: `placed`, measured on `straight`, follows it.
+void followPieces(const FollowedPieces& followed, const deform::Path& path,
+                  const map::GridMap& straight, const RegistrationOptions& options, Placed& placed);
+/// How many pieces were found, and what they bend by, in plain words.
+std::string describe(const FollowedPieces& followed);
 
 /// The part of the strip's ends that were not found although the fixed map shows where they should
 /// be, in plain words, and how long it is [m]; empty when there is none to speak of.

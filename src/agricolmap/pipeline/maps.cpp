@@ -69,13 +69,15 @@ void mapMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& g
   monitor.run(Stage::kGrid, [&] { gridMoving(moving, maps); });
 }
 
-void bendMoving(const Cloud& moving, const pieces::Bend& bend, Monitor& monitor, PairMaps& maps) {
-  monitor.run(Stage::kGrid, [&] {
+map::GridMap straightMap(const Cloud& moving, const pieces::Bend& bend, const PairMaps& maps,
+                         Monitor& monitor) {
+  return monitor.run(Stage::kGrid, [&] {
     const Cloud bent = pieces::bentCloud(moving, maps.frames.levelled_from_moving, bend);
-    maps.frames.moving_footprint = map::footprintOf(bent, maps.frames.levelled_from_moving);
-    maps.moving_box = maps.frames.moving_footprint.box;
-    gridMoving(bent, maps);
-    maps.bend = bend;
+    const map::Box2 box = map::footprintOf(bent, maps.frames.levelled_from_moving).box;
+    map::GridMap straight =
+        map::makeGridMap(bent, maps.frames.levelled_from_moving, box, maps.grid);
+    straight.ground_deviation = maps.moving.ground_deviation;
+    return straight;
   });
 }
 

@@ -1,8 +1,6 @@
 // Levelled and gridded: the two maps of a pair, which all that follows looks at.
 #pragma once
 
-#include <optional>
-
 #include "agricolmap/core/monitor.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/pieces/bend.hpp"
@@ -19,8 +17,6 @@ struct PairMaps {
   SearchSpace space;      ///< where the guess leaves the moving map
   map::GridMap fixed;
   map::GridMap moving;
-  /// What the moving cloud was laid straight by before it was drawn, levelled moving frame.
-  std::optional<pieces::Bend> bend;
 };
 
 /// Both clouds levelled under the guess (Sec. II, assumption 5) and drawn as multimodal grid maps
@@ -33,7 +29,8 @@ PairMaps mapPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d&
 void mapMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                const RegistrationOptions& options, Monitor& monitor, PairMaps& maps);
 
-/// Lays the moving cloud straight and grids it again; its levelled frame stays.
-void bendMoving(const Cloud& moving, const pieces::Bend& bend, Monitor& monitor, PairMaps& maps);
+/// The moving map of a cloud that is laid straight before it is gridded; its levelled frame stays.
+map::GridMap straightMap(const Cloud& moving, const pieces::Bend& bend, const PairMaps& maps,
+                         Monitor& monitor);
 
 }  // namespace agricolmap::pipeline

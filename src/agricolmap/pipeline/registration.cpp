@@ -124,8 +124,11 @@ std::optional<Outcome> placeByPieces(const Cloud& moving, const deform::Path& pa
       Stage::kLocate, [&] { return followFrom(poses, signals, path, anchor->along, options); });
   if (followed.empty()) return std::nullopt;
   const FollowedPieces& best = followed.front();
-  bendMoving(moving, best.joined->bend, monitor, maps);
-  const correlation::MapSignals straight(maps.moving, options.signal);
+  // What is not to be followed is not laid straight either.
+  const bool bends = options.deform == DeformKind::kPath;
+  const map::GridMap straight_map =
+      bends ? straightMap(moving, best.joined->bend, maps, monitor) : maps.moving;
+  const correlation::MapSignals straight(straight_map, options.signal);
   const refine::PairSignals laid = signalsOf(fixed, straight, options, monitor);
   Located located;
   located.search = anchor->outcome.trace.located.search;
@@ -140,6 +143,10 @@ std::optional<Outcome> placeByPieces(const Cloud& moving, const deform::Path& pa
   Outcome outcome = settle(maps, laid, std::move(located), std::move(rivals), sure, monitor);
   outcome.trace.attempts = anchor->outcome.trace.attempts;
   outcome.trace.pieces = best.chain;
+  if (bends && outcome.placed) {
+    followPieces(best, path, straight_map, options, *outcome.placed);
+    outcome.verdict.reasons.push_back(describe(best));
+  }
   if (const auto lost = lostEnd(best, path, fixed.at(refine::kRankingFactor))) {
     outcome.verdict = verdict::rejectBecause(lost->words);
   }

@@ -37,9 +37,6 @@ struct Transform {
   Eigen::Affine3d fixed_from_moving = Eigen::Affine3d::Identity();
   /// The same between the local frames (about the clouds' origins).
   Eigen::Affine3d local_fixed_from_moving = Eigen::Affine3d::Identity();
-  /// Of a strip that was laid straight first (PairMaps::bend): the same for the cloud as it was
-  /// then. The others are what comes nearest to both together. Else equal to `fixed_from_moving`.
-  Eigen::Affine3d fixed_from_bent = Eigen::Affine3d::Identity();
 
   // Parts, relative to the initial guess, at the middle of the moving map.
   HorizontalParts parts;  ///< yaw [rad], scales along the moving file's axes
@@ -67,9 +64,8 @@ struct Registration {
   Trace trace;
   PairMaps maps;  ///< for pictures and reports
 
-  /// Whether the moving cloud is laid by more than the transform: pieces of a long strip, or a bend
-  /// that is followed.
-  bool bent() const { return maps.bend.has_value() || (placed && placed->followed); }
+  /// Whether the moving cloud is laid by more than the transform: a bend that is followed.
+  bool bent() const { return placed && placed->followed; }
 };
 
 /// Registers `moving` into `fixed`. `guess`: moving file coordinates → fixed file coordinates.
