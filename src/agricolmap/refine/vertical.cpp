@@ -64,6 +64,10 @@ constexpr double kLiftDoubt = 0.35;
 /// all.
 constexpr double kUnlike = 0.2;
 constexpr double kLike = 0.4;
+/// A drone does not see a canopy twice as deep as it is: where it seems to, the robot sees the tops
+/// alone, and what is lowest among them is no ground whatever its colour.
+constexpr double kTopsOnly = 2.4;
+constexpr double kAnyDepth = 2.0;
 /// Residuals beyond this many deviations do not tell whether the lift is followed.
 constexpr double kFollowed = 4.0;
 
@@ -268,6 +272,7 @@ VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving
         predictLift(fixed, moving, under_moving, fixed_from_moving, cells, raw.plane, result.about);
     result.blur = canopy.blur;
     result.canopy_gain = canopy.gain;
+    result.ground_seen *= between(canopy.gain, kTopsOnly, kAnyDepth);
     // Surfaces that have nothing in common predict nothing.
     const double share = followed(cells, differences, canopy.lift, ground, raw) *
                          between(canopy.correlation, kUnlike, kLike);
