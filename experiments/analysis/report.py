@@ -7,13 +7,13 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader
 from markupsafe import Markup
 
-from . import accuracy, breaking, cases, costs, heights, success, trust
+from . import accuracy, bends, breaking, cases, costs, heights, success, trust
 from .methods import with_held_answers
 from .plots import to_svg
 from .section import TEXTS
 
 _MAKERS = (success.section, accuracy.section, accuracy.inlier_section, cases.section,
-           breaking.section, heights.section, trust.section, costs.section)
+           breaking.section, bends.section, heights.section, trust.section, costs.section)
 _LONG_CELL = 40
 _BLOCK = re.compile(r"<!-- analyse: ([\w-]+)/([\w-]+) -->\n.*?<!-- end -->", re.DOTALL)
 
