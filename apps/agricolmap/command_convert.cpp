@@ -53,6 +53,7 @@ Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudForm
     move->crs = frame->crs;
   }
   const io::LasCopied copied = io::copyLas(from, to, format == io::CloudFormat::kLaz, move);
+  printWarnings(copied.warnings);
   return {copied.points, copied.left_out};
 }
 

@@ -100,10 +100,10 @@ std::vector<std::string> writeResults(const RegisterArguments& arguments,
     monitor.run(Stage::kWrite, [&] {
       const Eigen::Affine3d& fixed_from_moving = result.transform->fixed_from_moving;
       io::writeMatrix(output.path("transform.txt"), fixed_from_moving, transformComment(pair));
-      const auto warning = writeAligned(arguments.files, pair, moveOf(result, pair.moving), output);
-      if (!warning) return;
-      monitor.warn(*warning);
-      printWarnings({*warning});
+      const auto warnings =
+          writeAligned(arguments.files, pair, moveOf(result, pair.moving), output);
+      printWarnings(warnings);
+      for (const std::string& warning : warnings) monitor.warn(warning);
     });
   }
   if (arguments.no_pictures) return {};

@@ -80,24 +80,27 @@ std::vector<std::string> alignedNames() {
   return names;
 }
 
-std::optional<std::string> writeAligned(const PairFiles& files, const LoadedPair& pair,
-                                        const io::PointMove& fixed_from_moving,
-                                        const io::StagedOutput& output) {
+std::vector<std::string> writeAligned(const PairFiles& files, const LoadedPair& pair,
+                                      const io::PointMove& fixed_from_moving,
+                                      const io::StagedOutput& output) {
   const io::OutputPath path = output.path(nameOfAligned(pair.aligned));
   if (!isLas(pair.aligned) || !isLas(formatOf(files.moving))) {
     io::writeCloud(path, pair.moving, pair.aligned, fixed_from_moving);
-    return std::nullopt;
+    return {};
   }
   io::LasMove move;
   move.map = pair.frame.moving.get();
   move.target_from_file = fixed_from_moving;
   move.origin = pair.moving.origin;
   move.crs = pair.frame.crs;
-  const io::LasCopied copied =
+  io::LasCopied copied =
       io::copyLas(files.moving, path, pair.aligned == io::CloudFormat::kLaz, move);
-  if (copied.left_out == 0) return std::nullopt;
-  return fmt::format("{}: {} points were left out of the aligned cloud: too far from the others",
-                     files.moving, copied.left_out);
+  if (copied.left_out > 0) {
+    copied.warnings.push_back(
+        fmt::format("{}: {} points were left out of the aligned cloud: too far from the others",
+                    files.moving, copied.left_out));
+  }
+  return copied.warnings;
 }
 
 std::string transformComment(const LoadedPair& pair) {

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,9 +41,9 @@ std::vector<std::string> alignedNames();
 
 /// Writes the moving cloud, moved: from LAS to LAS or LAZ point by point with all attributes, else
 /// its coordinates and colours. What the caller should know is returned.
-std::optional<std::string> writeAligned(const PairFiles& files, const LoadedPair& pair,
-                                        const io::PointMove& fixed_from_moving,
-                                        const io::StagedOutput& output);
+std::vector<std::string> writeAligned(const PairFiles& files, const LoadedPair& pair,
+                                      const io::PointMove& fixed_from_moving,
+                                      const io::StagedOutput& output);
 
 /// What transform.txt says of itself; empty where nothing is known.
 std::string transformComment(const LoadedPair& pair);

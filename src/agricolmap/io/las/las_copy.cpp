@@ -1,5 +1,7 @@
 #include "agricolmap/io/las/las_copy.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -78,7 +80,10 @@ LasCopied copyLas(const std::filesystem::path& from, const OutputPath& to, bool 
   LasOutline outline = lasOutline(file.bytes(), header);
   if (move) outline = movedOutline(std::move(outline), *move);
   LasCopied copied;
-  copied.kept_crs = !move || move->crs.wkt.empty();
+  if (header.layout.wave) {
+    copied.warnings.push_back(fmt::format(
+        "{}: its points refer to wave packets, which are not taken along", from.string()));
+  }
 
   LasWriter writer(to, outline, compressed);
   const std::size_t length = header.layout.length;

@@ -25,8 +25,8 @@ struct LasMove {
 
 struct LasCopied {
   std::uint64_t points = 0;
-  std::uint64_t left_out = 0;  ///< that have no place in the target: wild ones
-  bool kept_crs = true;        ///< the records of the source say which coordinate system it is
+  std::uint64_t left_out = 0;         ///< that have no place in the target: wild ones
+  std::vector<std::string> warnings;  ///< what could not be taken along
 };
 
 /// Copies the points of a LAS or LAZ file (COPC loses its order) with all that they have and all
