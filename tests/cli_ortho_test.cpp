@@ -90,10 +90,10 @@ TEST_F(OrthoTest, APairWithASurfaceModelRegistersToTheTruth) {
       simulate({"--ortho", ortho, "--dsm", dsm, "--dtm", dtm, "-o", inFolder("pair")}));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_NE(made.err.find("the rows run at"), std::string::npos) << made.err;
-  EXPECT_EQ(entries("pair"), (std::set<std::string>{"pair.png", "prior.txt", "simulation.yaml",
-                                                    "truth.txt", "truth_points.ply", "uav",
-                                                    "uav/offset.xyz", "uav/point_cloud.ply", "ugv",
-                                                    "ugv/offset.xyz", "ugv/point_cloud.ply"}));
+  EXPECT_EQ(entries("pair"), (std::set<std::string>{
+                                 "pair.png", "prior.txt", "simulation.yaml", "truth.txt",
+                                 "truth_points.ply", "uav", "uav/offset.xyz", "uav/point_cloud.ply",
+                                 "ugv", "ugv/offset.xyz", "ugv/path.txt", "ugv/point_cloud.ply"}));
   const PairFiles files{inFolder("pair")};
   const PlyPoint first = pointsOfPly(contentOf(files.uav())).front();
   EXPECT_NEAR(first.xyz[0], kEast, 0.5);

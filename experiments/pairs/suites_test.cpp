@@ -41,7 +41,7 @@ TEST(Suites, HaveDistinctNamesAndSoundOptions) {
     }
   }
   EXPECT_EQ(casesOf("paper").size(), 15U);
-  EXPECT_EQ(suiteNames().size(), 16U);
+  EXPECT_EQ(suiteNames().size(), 17U);
 }
 
 TEST(Suites, UnknownNamesListTheKnownOnes) {

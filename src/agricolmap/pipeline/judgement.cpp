@@ -66,6 +66,7 @@ Placed measure(const refine::PairSignals& signals, const SearchSpace& space,
     return refine::fitVertical(signals.fixed().grid(), signals.moving().grid(), pose,
                                options.vertical);
   });
+  placed.heights_verdict = verdict::judgeHeights(placed.heights, options.uncertainty);
   monitor.run(Stage::kJudge, [&] {
     // At the ranking level: finer maps may be sparser than their cells.
     const refine::SignalPair whole = signals.whole(refine::kRankingFactor);

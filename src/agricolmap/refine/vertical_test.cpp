@@ -128,7 +128,8 @@ TEST(Vertical, FewGroundCellsThatFitCountBeforeLevelledPlanes) {
   }
   const VerticalResult result = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
   EXPECT_LT(result.ground_share, 0.05);
-  EXPECT_NEAR(result.offset, 0.06, 0.02);
+  // Leaves beside so few gaps lift it by 2 cm; levelled planes would put it at 0.
+  EXPECT_NEAR(result.offset, 0.06, 0.025);
 }
 
 TEST(Vertical, MapsThatDoNotOverlapHaveNoHeight) {
