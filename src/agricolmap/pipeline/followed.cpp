@@ -1,5 +1,6 @@
 #include "agricolmap/pipeline/followed.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "agricolmap/core/parallel.hpp"
@@ -11,6 +12,8 @@ namespace {
 /// that the maps show, and of the correlation.
 constexpr double kLeastKept = 0.8;
 constexpr double kMostLost = 0.01;
+/// A slip has a place and an offset.
+constexpr double kFreedomOfSlip = 3.0;
 
 /// What the slices of the evidence tell of where pieces of the strip lie.
 std::vector<deform::PieceOffset> piecesOf(const verdict::PartsReport& parts) {
@@ -28,6 +31,12 @@ bool fitsAsOne(const Placed& straight, const Placed& bent) {
          straight.evidence.agreement() >= bent.evidence.agreement() - 1e-9 &&
          straight.evidence.significance >= kLeastKept * bent.evidence.significance &&
          straight.correlation >= bent.correlation - kMostLost;
+}
+
+/// How freely the bend could follow chance: its coefficients.
+double freedomOf(const deform::Deformation& deformation) {
+  return 2.0 * deformation.basis().size() +
+         kFreedomOfSlip * static_cast<double>(deformation.slips.size());
 }
 
 }  // namespace
@@ -56,6 +65,8 @@ void followBends(const refine::PairSignals& signals, const SearchSpace& space,
   pose.pose = followed.bend.pose;
   Placed next = measure(straight, space, pose, refined, options, monitor);
   if (!fitsAsOne(next, placed)) return;
+  verdict::discountFreedom(next.evidence, placed.evidence.significance,
+                           freedomOf(followed.bend.deformation));
   next.followed = std::move(followed);
   placed = std::move(next);
 }

@@ -93,6 +93,14 @@ double Evidence::decoyRatio() const {
   return significance / std::max(1.0, *std::max_element(decoys.begin(), decoys.end()));
 }
 
+void discountFreedom(Evidence& evidence, double before, double freedom) {
+  const double square = evidence.significance * evidence.significance - freedom;
+  const double sure = std::max(before, std::sqrt(std::max(0.0, square)));
+  if (!(sure < evidence.significance)) return;
+  evidence.uniqueness *= sure / evidence.significance;
+  evidence.significance = sure;
+}
+
 double blockSide(const map::StripFrame& strip, const EvidenceOptions& options) {
   const double area = 4.0 * strip.half_extent.prod();
   return std::clamp(std::sqrt(area / kFewestBlocks), std::min(kLeastBlock, options.block),

@@ -56,4 +56,10 @@ double blockSide(const map::StripFrame& strip, const EvidenceOptions& options);
 Evidence measureEvidence(const correlation::StripScore& score, const Eigen::Affine2d& pose,
                          const SearchSpace& space, double rival, const EvidenceOptions& options);
 
+/// Takes from the evidence for a strip that was bent straight what a bend with so many coefficients
+/// (`freedom`) gains by chance: a wrong place fits better, too, on average by one squared deviation
+/// for each. Rivals and decoys had no such freedom. Never below `before`, the significance of the
+/// strip as it was.
+void discountFreedom(Evidence& evidence, double before, double freedom);
+
 }  // namespace agricolmap::verdict

@@ -68,5 +68,26 @@ TEST_F(EvidenceTest, BlocksOffTheMapAreNotCounted) {
   EXPECT_EQ(nothing.significance, 0.0);
 }
 
+TEST(Evidence, WhatABendGainsByChanceDoesNotCount) {
+  Evidence evidence;
+  evidence.significance = 6.7;
+  evidence.uniqueness = 1.34;
+  discountFreedom(evidence, 4.2, 24.0);  // of a mirrored strip
+  EXPECT_NEAR(evidence.significance, 4.57, 0.01);
+  EXPECT_NEAR(evidence.uniqueness, 1.34 * 4.57 / 6.7, 0.01);
+  evidence.significance = 6.0;
+  discountFreedom(evidence, 5.9, 24.0);
+  EXPECT_EQ(evidence.significance, 5.9);
+}
+
+TEST(Evidence, WhatABendGainsBeyondChanceCounts) {
+  Evidence evidence;
+  evidence.significance = 25.0;
+  evidence.uniqueness = 4.0;
+  discountFreedom(evidence, 15.0, 24.0);  // of a strip that drifted
+  EXPECT_GT(evidence.significance, 24.5);
+  EXPECT_GT(evidence.uniqueness, 3.9);
+}
+
 }  // namespace
 }  // namespace agricolmap::verdict
