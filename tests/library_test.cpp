@@ -246,7 +246,7 @@ TEST(RegisterClouds, RefusesCloudsThatAreNotWhole) {
     return [&] { registerClouds(cloud, bare, Transform::Identity()); };
   };
   Cloud half = bare;
-  half.rgb.resize(2);
+  half.rgb = {Rgb{}, Rgb{}};
   expectError<InputError>(run(half), "2 colours for 3 points", ErrorKind::kInput);
   Cloud lost = bare;
   lost.xyz[1].z() = std::numeric_limits<float>::infinity();

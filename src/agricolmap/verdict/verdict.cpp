@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/transform.hpp"
@@ -57,10 +58,12 @@ std::string headline(const Verdict& verdict) {
 void requireHeights(Verdict& verdict) {
   if (verdict.status != Status::kAccepted || !verdict.heights.limited()) return;
   verdict.status = Status::kRejected;
-  verdict.reasons.insert(
-      verdict.reasons.begin(),
+  std::vector<std::string> reasons;
+  reasons.push_back(
       fmt::format("heights are required, and limited: {}; in the plane it would be accepted",
                   describe(verdict.heights)));
+  for (std::string& reason : verdict.reasons) reasons.push_back(std::move(reason));
+  verdict.reasons = std::move(reasons);
   verdict.remedies.emplace_back(
       "map wheel tracks, gaps or the field's edge, too, where both maps see soil");
 }
