@@ -13,8 +13,8 @@ namespace agricolmap {
 
 /// Reads PLY, PCD 0.7, LAS 1.0 to 1.5 and, in a build with LASzip, LAZ and COPC, told apart by
 /// content. Points in file order; those with a NaN, an infinity or a coordinate beyond 1e8 m and
-/// those marked as withheld are left out and counted. Throws InputError naming file, place and reason when the file is not what its header
-/// says.
+/// those marked as withheld are left out and counted. Throws InputError naming file, place and
+/// reason when the file is not what its header says.
 AGRICOLMAP_EXPORT Cloud readCloud(const std::filesystem::path& path);
 
 /// A cloud from points in memory, by the same rules. `colours` is empty or one per point; `name`
