@@ -1,14 +1,17 @@
 // What tests need that damage files by thousands.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "agricolmap/core/random.hpp"
+#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/test_support.hpp"
 
 namespace agricolmap::test {
@@ -50,6 +53,36 @@ inline std::string damage(std::string file, std::size_t header, Random& random) 
     }
   }
   return file;
+}
+
+struct Survived {
+  int read = 0;
+  int refused = 0;
+};
+
+/// Reads `times` damaged versions of each file of 20 points: a cloud of finite points or an
+/// InputError, nothing else, must come of it.
+inline Survived readDamaged(const std::vector<std::string>& files, std::size_t header, int times,
+                            std::uint64_t seed) {
+  const MemoryFile memory;
+  Random random(seed);
+  Survived survived;
+  for (const std::string& file : files) {
+    EXPECT_EQ(io::readCloud(memory.write(file)).size(), 20U);
+    for (int i = 0; i < times; ++i) {
+      const auto path = memory.write(damage(file, header, random));
+      try {
+        const Cloud cloud = io::readCloud(path);
+        ++survived.read;
+        EXPECT_FALSE(cloud.empty());
+        EXPECT_TRUE(std::all_of(cloud.xyz.begin(), cloud.xyz.end(),
+                                [](const Eigen::Vector3f& p) { return p.allFinite(); }));
+      } catch (const InputError&) {
+        ++survived.refused;
+      }
+    }
+  }
+  return survived;
 }
 
 }  // namespace agricolmap::test

@@ -1,6 +1,8 @@
 // A strip in a row field for tests: both maps and where the one lies in the other.
 #pragma once
 
+#include <algorithm>
+
 #include "agricolmap/map/test_field.hpp"
 
 namespace agricolmap::testing {
@@ -39,6 +41,31 @@ inline TestScene testScene(const TestField& field, const TestError& error, doubl
 /// `pose` moved on by a shift in the fixed frame [m].
 inline Eigen::Affine2d shifted(const Eigen::Affine2d& pose, const Eigen::Vector2d& shift) {
   return Eigen::Translation2d(shift) * pose;
+}
+
+/// A strip from west to east whose cells truly lie `offset(x)` beside where the pose puts them, x
+/// from its western end [m], in bands of `band` cells.
+template <typename Offset>
+TestScene bentScene(const TestField& field, const TestError& error, double length, int band,
+                    const Offset& offset) {
+  TestScene scene = testScene(field, error, length);
+  const Truth truth = growField(field);
+  const GridFrame& frame = scene.moving.frame;
+  const map::Box2 window(frame.corner,
+                         frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows));
+  for (int first = 0; first < frame.cols; first += band) {
+    const Eigen::Vector2d beside = offset((first + 0.5 * band) * frame.cell);
+    const map::GridMap view = viewOf(truth, field, window, shifted(scene.pose, beside), 0.05, 12);
+    for (int r = 0; r < frame.rows; ++r) {
+      for (int c = first; c < std::min(first + band, frame.cols); ++c) {
+        scene.moving.weight(r, c) = view.weight(r, c);
+        scene.moving.exg(r, c) = view.exg(r, c);
+        scene.moving.height(r, c) = view.height(r, c);
+        scene.moving.colour(r, c) = view.colour(r, c);
+      }
+    }
+  }
+  return scene;
 }
 
 }  // namespace agricolmap::testing

@@ -19,30 +19,9 @@ const testing::TestError kGuess{{0.3, -0.2}, 0.0, 1.0, 1.0};
 const TestField kField{.size = 23.0};
 const PiecesOptions kPieces{.from = 10.0, .piece = 5.0, .drift = 0.04, .slip = 1.0};
 
-/// A strip from west to east whose cells truly lie `offset(x)` beside where the pose puts them, x
-/// from its western end [m].
 template <typename Offset>
 TestScene sceneWith(const Offset& offset) {
-  TestScene scene = testing::testScene(kField, kGuess, kLength);
-  const testing::Truth truth = testing::growField(kField);
-  const GridFrame& frame = scene.moving.frame;
-  const map::Box2 window(frame.corner,
-                         frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows));
-  constexpr int kBand = 25;  // cells
-  for (int first = 0; first < frame.cols; first += kBand) {
-    const Eigen::Vector2d beside = offset((first + 0.5 * kBand) * frame.cell);
-    const map::GridMap view =
-        testing::viewOf(truth, kField, window, shifted(scene.pose, beside), 0.05, 12);
-    for (int r = 0; r < frame.rows; ++r) {
-      for (int c = first; c < std::min(first + kBand, frame.cols); ++c) {
-        scene.moving.weight(r, c) = view.weight(r, c);
-        scene.moving.exg(r, c) = view.exg(r, c);
-        scene.moving.height(r, c) = view.height(r, c);
-        scene.moving.colour(r, c) = view.colour(r, c);
-      }
-    }
-  }
-  return scene;
+  return testing::bentScene(kField, kGuess, kLength, 25, offset);
 }
 
 struct Chained {

@@ -20,30 +20,9 @@ constexpr int kFactor = 3;
 constexpr double kLength = 8.0;
 const testing::TestError kGuess{{0.6, -0.4}, 0.05, 1.04, 0.97};
 
-/// A strip from west to east whose cells truly lie `offset(x)` beside where the pose puts them, x
-/// from its western end [m].
 template <typename Offset>
 TestScene sceneWith(const TestField& field, const Offset& offset) {
-  TestScene scene = testing::testScene(field, kGuess, kLength);
-  const testing::Truth truth = testing::growField(field);
-  const GridFrame& frame = scene.moving.frame;
-  const map::Box2 window(frame.corner,
-                         frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows));
-  constexpr int kBand = 20;  // cells
-  for (int first = 0; first < frame.cols; first += kBand) {
-    const Eigen::Vector2d beside = offset((first + 0.5 * kBand) * frame.cell);
-    const map::GridMap view =
-        testing::viewOf(truth, field, window, shifted(scene.pose, beside), 0.05, 12);
-    for (int r = 0; r < frame.rows; ++r) {
-      for (int c = first; c < std::min(first + kBand, frame.cols); ++c) {
-        scene.moving.weight(r, c) = view.weight(r, c);
-        scene.moving.exg(r, c) = view.exg(r, c);
-        scene.moving.height(r, c) = view.height(r, c);
-        scene.moving.colour(r, c) = view.colour(r, c);
-      }
-    }
-  }
-  return scene;
+  return testing::bentScene(field, kGuess, kLength, 20, offset);
 }
 
 PartsReport partsOf(const TestScene& scene, const Eigen::Affine2d& pose) {

@@ -4,16 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "agricolmap/core/random.hpp"
-#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/fuzz_test_support.hpp"
 
 namespace agricolmap::io {
 namespace {
 
 using test::append;
-using test::damage;
-using test::MemoryFile;
 
 std::vector<std::string> validFiles() {
   std::vector<std::string> files;
@@ -61,26 +57,9 @@ std::vector<std::string> validFiles() {
 }
 
 TEST(CloudFuzz, DamagedFilesAreReadOrRefused) {
-  const MemoryFile memory;
-  Random random(11);
-  int read = 0;
-  int refused = 0;
-  for (const std::string& file : validFiles()) {
-    ASSERT_EQ(readCloud(memory.write(file)).size(), 20U);
-    for (int i = 0; i < 1500; ++i) {
-      const auto path = memory.write(damage(file, 260, random));
-      try {
-        const Cloud cloud = readCloud(path);
-        ++read;
-        ASSERT_FALSE(cloud.empty());
-        for (const Eigen::Vector3f& p : cloud.xyz) ASSERT_TRUE(p.allFinite());
-      } catch (const InputError&) {
-        ++refused;
-      }
-    }
-  }
-  EXPECT_GT(read, 500);
-  EXPECT_GT(refused, 2000);
+  const test::Survived survived = test::readDamaged(validFiles(), 260, 1500, 11);
+  EXPECT_GT(survived.read, 500);
+  EXPECT_GT(survived.refused, 2000);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Damaged LAS and LAZ files must give an InputError or a cloud, never anything else.
 #include <vector>
 
-#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/fuzz_test_support.hpp"
 #include "agricolmap/io/las/las_test_support.hpp"
 #include "agricolmap/io/las/las_writer.hpp"
@@ -9,9 +8,7 @@
 namespace agricolmap::io {
 namespace {
 
-using test::damage;
 using test::LasBytes;
-using test::MemoryFile;
 
 LasBytes points(int format, int minor) {
   LasBytes file;
@@ -48,26 +45,9 @@ std::vector<std::string> validFiles() {
 }
 
 TEST(LasFuzz, DamagedFilesAreReadOrRefused) {
-  const MemoryFile memory;
-  Random random(17);
-  int read = 0;
-  int refused = 0;
-  for (const std::string& file : validFiles()) {
-    ASSERT_EQ(readCloud(memory.write(file)).size(), 20U);
-    for (int i = 0; i < 3000; ++i) {
-      const auto path = memory.write(damage(file, 500, random));
-      try {
-        const Cloud cloud = readCloud(path);
-        ++read;
-        ASSERT_FALSE(cloud.empty());
-        for (const Eigen::Vector3f& p : cloud.xyz) ASSERT_TRUE(p.allFinite());
-      } catch (const InputError&) {
-        ++refused;
-      }
-    }
-  }
-  EXPECT_GT(read, 5000);
-  EXPECT_GT(refused, 5000);
+  const test::Survived survived = test::readDamaged(validFiles(), 500, 3000, 17);
+  EXPECT_GT(survived.read, 5000);
+  EXPECT_GT(survived.refused, 5000);
 }
 
 }  // namespace
