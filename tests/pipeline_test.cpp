@@ -85,6 +85,60 @@ TEST(Pipeline, FollowsALongStripPieceByPiece) {
   EXPECT_EQ(with_path.verdict.status, verdict::Status::kAccepted);
 }
 
+double rmsOf(const Cloud& cloud, const std::vector<Eigen::Vector3d>& truth) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    sum += (cloud.filePoint(i) - truth[i]).head<2>().squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(cloud.size()));
+}
+
+/// `shift(along)` in the file, along the way [m].
+template <typename Shift>
+simulate::SimulatedPair slippedPair(const Shift& shift) {
+  simulate::SimulationOptions options = simulate::cropPreset(simulate::Crop::kSugarBeet10m);
+  options.field.width = options.field.height = 16.0;
+  options.ugv.length = 8.0;
+  options.ugv.spacing = 0.008;
+  options.geotag.file_heading_deg = 0.0;
+  options.seed = 21;
+  simulate::SimulatedPair pair = simulate::simulatePair(options);
+  const Eigen::Vector3d ahead(std::cos(pair.strip_heading), std::sin(pair.strip_heading), 0.0);
+  const Eigen::Matrix3d in_file = pair.nominal.linear().inverse();
+  for (std::size_t i = 0; i < pair.truth.size(); ++i) {
+    const double along = ahead.dot(pair.truth[i] - pair.strip_centre);
+    pair.ugv.xyz[i] += (in_file * shift(along, ahead)).template cast<float>();
+  }
+  return pair;
+}
+
+/// The pose of a strip in three parts is a compromise: what is straight again is refined again.
+TEST(Pipeline, FollowsAStripThatSlippedTwice) {
+  const simulate::SimulatedPair pair =
+      slippedPair([](double along, const Eigen::Vector3d& ahead) -> Eigen::Vector3d {
+        const Eigen::Vector3d left(-ahead.y(), ahead.x(), 0.0);
+        return along > 1.5 ? 0.25 * ahead : along < -1.5 ? 0.25 * left : 0.0 * left;
+      });
+  const pipeline::Registration result = registerPair(pair);
+  EXPECT_EQ(result.verdict.status, verdict::Status::kAccepted) << result.verdict.reasons.front();
+  ASSERT_TRUE(result.bent());
+  EXPECT_LT(rmsOf(pipeline::alignedCloud(result, pair.ugv), pair.truth), 0.025);
+}
+
+/// Which of the points belongs where nobody can tell where parts lie over one another.
+TEST(Pipeline, StatesWhatOverlappingPartsAreOffBy) {
+  const simulate::SimulatedPair pair =
+      slippedPair([](double along, const Eigen::Vector3d& ahead) -> Eigen::Vector3d {
+        return along > 1.5 ? Eigen::Vector3d(-0.3 * ahead) : Eigen::Vector3d(0.0 * ahead);
+      });
+  const pipeline::Registration result = registerPair(pair);
+  EXPECT_NE(result.verdict.status, verdict::Status::kAccepted);
+  ASSERT_TRUE(result.bent() && result.placed->uncertainty);
+  const double error = rmsOf(pipeline::alignedCloud(result, pair.ugv), pair.truth);
+  EXPECT_GT(error, 0.04);
+  EXPECT_NEAR(result.placed->uncertainty->expected_rms, error, 0.02);
+}
+
 TEST(Pipeline, ItsStagesAddUpToTheTimeItTook) {
   const simulate::SimulatedPair pair = smallPair(9);
   for (const char* name : {"default", "paper"}) {

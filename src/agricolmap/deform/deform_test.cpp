@@ -26,29 +26,9 @@ refine::VerticalResult flat() {
   return heights;
 }
 
-/// A strip from west to east whose cells truly lie `offset(x)` beside where the pose puts them, x
-/// from its western end [m].
 struct BentScene {
-  explicit BentScene(const Offset& offset) : scene(testing::testScene(kField, kError, kLength)) {
-    const testing::Truth truth = testing::growField(kField);
-    const GridFrame& frame = scene.moving.frame;
-    const map::Box2 window(frame.corner,
-                           frame.corner + frame.cell * Eigen::Vector2d(frame.cols, frame.rows));
-    constexpr int kBand = 5;  // cells
-    for (int first = 0; first < frame.cols; first += kBand) {
-      const Eigen::Vector2d beside = offset((first + 0.5 * kBand) * frame.cell);
-      const map::GridMap view =
-          testing::viewOf(truth, kField, window, testing::shifted(scene.pose, beside), 0.05, 12);
-      for (int r = 0; r < frame.rows; ++r) {
-        for (int c = first; c < std::min(first + kBand, frame.cols); ++c) {
-          scene.moving.weight(r, c) = view.weight(r, c);
-          scene.moving.exg(r, c) = view.exg(r, c);
-          scene.moving.height(r, c) = view.height(r, c);
-          scene.moving.colour(r, c) = view.colour(r, c);
-        }
-      }
-    }
-  }
+  explicit BentScene(const Offset& offset)
+      : scene(testing::bentScene(kField, kError, kLength, 5, offset)) {}
   std::optional<Bend> follow(const std::vector<PieceOffset>& pieces = {},
                              const BendOptions& options = {}) const {
     const correlation::MapSignals fixed(scene.fixed, {});
@@ -142,6 +122,20 @@ TEST(Deformation, TurnsWhatLiesAsideOfABentPath) {
   const Eigen::Vector3d beside = deformation.at({4.0, 1.0});
   EXPECT_NEAR(beside.x(), -0.01, 1e-12);
   EXPECT_NEAR(beside.y(), 0.04, 1e-12);
+}
+
+TEST(SlipRms, PartsPushedIntoOneAnotherCannotBeToldApartWhereTheyOverlap) {
+  Deformation deformation(Path({{0.0, 0.0}, {10.0, 0.0}}), Eigen::Matrix2d::Identity(),
+                          SplineBasis(10.0, 1.0));
+  EXPECT_EQ(slipRms(deformation), 0.0);
+  // What was driven on by 30 cm too little lies over what came before: half of 60 cm are wrong.
+  deformation.slips = {{.along = 5.0, .offset = {0.3, 0.0}, .deviation = 0.0}};
+  EXPECT_NEAR(slipRms(deformation), 0.3 * std::sqrt(0.3 / 10.0), 1e-9);
+  // Pulled apart there is nothing between them that could be wrong.
+  deformation.slips.front().offset = {-0.3, 0.0};
+  EXPECT_EQ(slipRms(deformation), 0.0);
+  deformation.slips.front().place_deviation = 0.06;
+  EXPECT_GT(slipRms(deformation), 0.01);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "agricolmap/deform/deformation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -9,6 +10,8 @@ namespace {
 
 /// What cells on the wrong side of a slip may pull the parts by, per axis [m]; from development.
 constexpr double kBesideSlips = 0.008;
+/// How far a slip is misplaced on average, of the deviation of its place.
+constexpr double kMisplaced = 0.8;
 
 }  // namespace
 
@@ -72,6 +75,15 @@ Eigen::Vector3d Deformation::onPath(double along) const {
     if (along >= slip.along) displacement.head<2>() += slip.offset;
   }
   return displacement;
+}
+
+double slipRms(const Deformation& deformation) {
+  double sum = 0.0;
+  for (const Slip& slip : deformation.slips) {
+    const double overlap = std::max(0.0, slip.offset.dot(deformation.tangent(slip.along)));
+    sum += slip.offset.squaredNorm() * (kMisplaced * slip.place_deviation + overlap);
+  }
+  return std::sqrt(sum / deformation.path().length());
 }
 
 }  // namespace agricolmap::deform

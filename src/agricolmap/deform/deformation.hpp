@@ -52,4 +52,8 @@ class Deformation {
   SplineBasis basis_;
 };
 
+/// Root mean square over the strip of what points on the wrong side of a slip are off by [m]. Where
+/// the parts were pushed into one another, as far as they overlap, half of what lies there is.
+double slipRms(const Deformation& deformation);
+
 }  // namespace agricolmap::deform

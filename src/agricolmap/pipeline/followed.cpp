@@ -63,10 +63,18 @@ void followBends(const refine::PairSignals& signals, const SearchSpace& space,
   });
   refine::RefinedPose pose = *refined.best;
   pose.pose = followed.bend.pose;
+  // What was found for a strip in parts is a compromise between them, in scale and shear, too.
+  refine::DenseRefineOptions near = options.dense;
+  near.hops = 0;
+  const auto found =
+      monitor.run(Stage::kRefine, [&] { return refine::refineFrom(straight, pose.pose, near); });
+  if (found) pose.pose = found->pose;
   Placed next = measure(straight, space, pose, refined, options, monitor);
   if (!fitsAsOne(next, placed)) return;
   verdict::discountFreedom(next.evidence, placed.evidence.significance,
                            freedomOf(followed.bend.deformation));
+  next.uncertainty->expected_rms =
+      std::hypot(next.uncertainty->expected_rms, deform::slipRms(followed.bend.deformation));
   next.followed = std::move(followed);
   placed = std::move(next);
 }

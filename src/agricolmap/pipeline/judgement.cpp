@@ -117,10 +117,7 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
   verdict.remedies = verdict::remediesFor(verdict, finding, space, options.verdict);
-  if (placed.followed) {
-    verdict::refuseSeveralSlips(verdict, placed.followed->bend.deformation.slips.size());
-    verdict.reasons.push_back(describe(placed.followed->bend));
-  }
+  if (placed.followed) verdict.reasons.push_back(describe(placed.followed->bend));
   if (const auto apart = verdict::sidesApart(placed.evidence)) {
     verdict.reasons.push_back(fmt::format(
         "the strip's two sides lie {:.0f} cm apart: if the robot passed twice, give its path",

@@ -55,34 +55,17 @@ std::string headline(const Verdict& verdict) {
                      describe(verdict.heights));
 }
 
-namespace {
-
-/// Rejects for a reason that stands before all others.
-void rejectFirst(Verdict& verdict, std::string reason, std::string remedy) {
-  verdict.status = Status::kRejected;
-  std::vector<std::string> reasons;
-  reasons.push_back(std::move(reason));
-  for (std::string& other : verdict.reasons) reasons.push_back(std::move(other));
-  verdict.reasons = std::move(reasons);
-  verdict.remedies.push_back(std::move(remedy));
-}
-
-}  // namespace
-
 void requireHeights(Verdict& verdict) {
   if (verdict.status != Status::kAccepted || !verdict.heights.limited()) return;
-  rejectFirst(
-      verdict,
+  verdict.status = Status::kRejected;
+  std::vector<std::string> reasons;
+  reasons.push_back(
       fmt::format("heights are required, and limited: {}; in the plane it would be accepted",
-                  describe(verdict.heights)),
+                  describe(verdict.heights)));
+  for (std::string& reason : verdict.reasons) reasons.push_back(std::move(reason));
+  verdict.reasons = std::move(reasons);
+  verdict.remedies.emplace_back(
       "map wheel tracks, gaps or the field's edge, too, where both maps see soil");
-}
-
-void refuseSeveralSlips(Verdict& verdict, std::size_t slips) {
-  if (verdict.status != Status::kAccepted || slips < 2) return;
-  rejectFirst(verdict,
-              fmt::format("the strip slipped in {} places: too many to be sure of each", slips),
-              "register the strip in parts, or mend its odometry where they join");
 }
 
 Verdict rejectBecause(std::string reason) { return {Status::kRejected, {std::move(reason)}}; }

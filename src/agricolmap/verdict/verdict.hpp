@@ -61,11 +61,6 @@ std::string headline(const Verdict& verdict);
 /// Rejects what is accepted in the plane with limited heights.
 void requireHeights(Verdict& verdict);
 
-/// Rejects what would be accepted of a strip that was followed over more slips than one: between
-/// them there is little that each of its parts can be held against, and what is wrong with one does
-/// not show (docs/deformation.md).
-void refuseSeveralSlips(Verdict& verdict, std::size_t slips);
-
 /// The verdict on a pair for which a stage found no answer at all.
 Verdict rejectBecause(std::string reason);
 

@@ -179,15 +179,5 @@ TEST(Probability, GrowsWithUniquenessAndAgreement) {
   EXPECT_LT(planeProbability(facts), whole);
 }
 
-TEST(Verdict, OneSlipIsFollowedAndSeveralAreRefused) {
-  Verdict verdict = judge(clearFinding(), {}, {});
-  refuseSeveralSlips(verdict, 1);
-  EXPECT_EQ(verdict.status, Status::kAccepted);
-  refuseSeveralSlips(verdict, 2);
-  EXPECT_EQ(verdict.status, Status::kRejected);
-  EXPECT_THAT(verdict.reasons.front(), HasSubstr("slipped in 2 places"));
-  EXPECT_THAT(verdict.remedies.back(), HasSubstr("in parts"));
-}
-
 }  // namespace
 }  // namespace agricolmap::verdict
