@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "agricolmap/core/parallel.hpp"
@@ -217,13 +218,23 @@ Bend bendOf(const Fitted& fitted, const Path& path, const SplineBasis& basis,
     deformation.coefficients.row(i).head<2>() =
         fitted.fit.coefficients.segment<2>(2 * i).transpose();
   }
-  for (std::size_t k = 0; k < fitted.slips.size(); ++k) {
-    const int at = 2 * (basis.size() + static_cast<int>(k));
-    deformation.slips.push_back({fitted.slips[k], fitted.fit.coefficients.segment<2>(at),
+  // Those that were found last may lie before others.
+  std::vector<std::size_t> order(fitted.slips.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return fitted.slips[a] < fitted.slips[b]; });
+  std::vector<int> ordered(static_cast<std::size_t>(fitted.fit.coefficients.size()));
+  std::iota(ordered.begin(), ordered.end(), 0);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const int at = 2 * (basis.size() + static_cast<int>(order[k]));
+    const std::size_t to = 2 * (static_cast<std::size_t>(basis.size()) + k);
+    ordered[to] = at;
+    ordered[to + 1] = at + 1;
+    deformation.slips.push_back({fitted.slips[order[k]], fitted.fit.coefficients.segment<2>(at),
                                  std::sqrt(0.5 * fitted.fit.covariance.block<2, 2>(at, at).trace()),
                                  kSlipPlace});
   }
-  deformation.covariance = fitted.fit.covariance;
+  deformation.covariance = fitted.fit.covariance(ordered, ordered);
   return bend;
 }
 

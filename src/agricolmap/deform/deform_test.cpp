@@ -93,6 +93,22 @@ TEST(Deform, FollowsASlipAndTellsWhereItIs) {
   EXPECT_NE(describe(*bend).find("slip"), std::string::npos);
 }
 
+TEST(Deform, SlipsAreInOrderAlongThePath) {
+  const Offset twice = [](double x) {
+    return Eigen::Vector2d(0.0, x < 2.7 ? -0.3 : x > 5.3 ? 0.3 : 0.0);
+  };
+  // The second is known before, the first is found.
+  std::vector<PieceOffset> pieces;
+  for (double x = 0.4; x < kLength; x += 0.8) {
+    pieces.push_back({x, x > 5.3 ? Eigen::Vector2d(0.0, 0.3) : Eigen::Vector2d(0.0, 0.0)});
+  }
+  const auto bend = BentScene(twice).follow(pieces);
+  ASSERT_TRUE(bend);
+  ASSERT_EQ(bend->deformation.slips.size(), 2U);
+  EXPECT_NEAR(bend->deformation.slips.front().along, 2.7, 0.3);
+  EXPECT_NEAR(bend->deformation.slips.back().along, 5.3, 0.3);
+}
+
 TEST(Deform, StraightenedMapIsWhatTheStripWouldBe) {
   const BentScene bent(kDrift);
   const auto bend = bent.follow();

@@ -1,5 +1,7 @@
 #include "agricolmap/verdict/probability.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,6 +65,12 @@ double placeProbability(const VerdictFacts& facts) {
 double planeProbability(const VerdictFacts& facts) {
   return placeProbability(facts) *
          withinLimit(std::hypot(facts.expected_rms, kLocalShare * facts.local_rms));
+}
+
+std::string percentOf(double probability) {
+  if (probability > 0.9995) return "> 99.9 %";
+  if (probability < 0.0005) return "< 0.1 %";
+  return fmt::format("{:.1f} %", 100.0 * probability);
 }
 
 }  // namespace agricolmap::verdict

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 namespace agricolmap::verdict {
 
@@ -39,5 +40,8 @@ VerdictFeatures verdictFeatures(const VerdictFacts& facts);
 double placeProbability(const VerdictFacts& facts);
 /// Of being within 5 cm RMS of the truth in the plane, whatever the height.
 double planeProbability(const VerdictFacts& facts);
+
+/// A probability in words: nothing is certain.
+std::string percentOf(double probability);
 
 }  // namespace agricolmap::verdict

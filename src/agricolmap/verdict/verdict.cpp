@@ -79,13 +79,6 @@ constexpr double kMirroredDecoy = 0.6;
 constexpr double kWeakAgreement = 0.55;
 constexpr double kLargeError = 0.03;  // [m]
 
-/// A probability in words: nothing is certain.
-std::string percent(double probability) {
-  if (probability > 0.9995) return "> 99.9 %";
-  if (probability < 0.0005) return "< 0.1 %";
-  return fmt::format("{:.1f} %", 100.0 * probability);
-}
-
 /// What no evidence can outweigh.
 std::vector<std::string> contradictions(const Finding& finding, const SearchSpace& space,
                                         const VerdictOptions& options) {
@@ -165,7 +158,7 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
     against.push_back(
         fmt::format("the probability of the right place (within 5 cm in the plane) is {} (at "
                     "least {:.0f} % needed)",
-                    percent(probability), 100 * options.min_probability));
+                    percentOf(probability), 100 * options.min_probability));
   }
   return against;
 }
@@ -183,7 +176,7 @@ std::vector<std::string> support(const Finding& finding, double plane) {
       fmt::format("{} of {} blocks, placed alone, agree with the whole", evidence.agreeing,
                   evidence.blocks.size()),
       fmt::format("the probability of the right place (within 5 cm in the plane) is {}",
-                  percent(plane))};
+                  percentOf(plane))};
   if (!evidence.parts.displaced.empty()) {
     reasons.push_back(fmt::format("{}: {:.1f} cm RMS of the whole", describe(evidence.parts),
                                   100 * evidence.parts.rms));

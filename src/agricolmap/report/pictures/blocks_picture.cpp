@@ -79,8 +79,7 @@ std::vector<std::pair<std::string, std::string>> figures(const pipeline::Registr
   return {{"blocks that agree", fmt::format("{} of {}", evidence.agreeing, evidence.blocks.size())},
           {"uniqueness (peak / next peak)", fmt::format("{:.2f}", evidence.uniqueness)},
           {"significance (peak / deviation)", fmt::format("{:.1f}", evidence.significance)},
-          {"probability of being right",
-           fmt::format("{:.1f} %", 100.0 * result.verdict.plane_probability)},
+          {"probability of being right", verdict::percentOf(result.verdict.plane_probability)},
           {"heights", toString(result.verdict.heights.status)},
           {"overlap", fmt::format("{:.0f} %", 100.0 * result.placed->overlap)},
           {"correlation", fmt::format("{:.2f}", result.placed->correlation)}};
