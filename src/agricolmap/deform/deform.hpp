@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,12 @@ struct Bend {
 std::optional<Bend> followBend(const refine::PairSignals& signals, const Eigen::Affine2d& pose,
                                const refine::VerticalResult& heights,
                                const std::vector<PieceOffset>& pieces, const BendOptions& options);
+
+/// The spline, nodes `node` [m] apart, of what takes points of the path elsewhere: `laid`, moving
+/// levelled frame → itself, to come before `pose`. `deviation`: of the places that it goes through,
+/// per axis [m].
+Bend bendThrough(const Path& path, const Eigen::Affine2d& pose, double node, double deviation,
+                 const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& laid);
 
 /// How far it bends and where it slipped, in plain words.
 std::string describe(const Bend& bend);

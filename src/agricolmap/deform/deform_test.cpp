@@ -140,6 +140,20 @@ TEST(Deformation, TurnsWhatLiesAsideOfABentPath) {
   EXPECT_NEAR(beside.y(), 0.04, 1e-12);
 }
 
+TEST(BendThrough, GoesWhereThePathDoes) {
+  const Path path({{0.0, 0.0}, {10.0, 0.0}});
+  const Eigen::Affine2d pose(Eigen::Rotation2Dd(0.5) * Eigen::Scaling(1.1, 0.9));
+  const auto laid = [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return p + Eigen::Vector3d(0.0, 0.2 * std::sin(0.5 * p.x()), 0.05 * std::cos(0.4 * p.x()));
+  };
+  const Bend bend = bendThrough(path, pose, 1.25, 0.005, laid);
+  for (double x = 0.0; x <= 10.0; x += 0.3) {
+    const Eigen::Vector3d point(x, 0.0, 0.0);
+    EXPECT_LT((unbent(point, bend.deformation, pose) - laid(point)).norm(), 0.001) << x;
+  }
+  EXPECT_NEAR(std::sqrt(bend.deformation.covarianceAt({5.0, 0.0})(0, 0)), 0.005, 0.003);
+}
+
 TEST(SlipRms, PartsPushedIntoOneAnotherCannotBeToldApartWhereTheyOverlap) {
   Deformation deformation(Path({{0.0, 0.0}, {10.0, 0.0}}), Eigen::Matrix2d::Identity(),
                           SplineBasis(10.0, 1.0));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "agricolmap/pieces/anchors.hpp"
 #include "agricolmap/pipeline/attempts.hpp"
 #include "agricolmap/pipeline/long_strip.hpp"
 #include "agricolmap/pipeline/place.hpp"
@@ -28,7 +29,9 @@ std::optional<Anchor> placeAnchor(const PairMaps& maps, const deform::Path& path
   // A piece is short: what bends it is not worth the time here.
   RegistrationOptions stiff = options;
   stiff.deform = DeformKind::kNone;
-  for (const double along : anchorsOf(path, moving, options)) {
+  const std::vector<double> anchors =
+      pieces::anchorsOf(path, moving, options.search.max_length, !options.prior.anywhere());
+  for (const double along : anchors) {
     const std::optional<PairMaps> piece = mapsOfPiece(maps, path, along, options);
     if (!piece) continue;
     const correlation::MapSignals fixed(piece->fixed, options.signal);

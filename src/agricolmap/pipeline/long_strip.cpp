@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -15,9 +14,6 @@
 namespace agricolmap::pipeline {
 namespace {
 
-constexpr std::size_t kAnchors = 3;
-/// A piece that shows less than this share of what the most telling one does waits.
-constexpr double kTelling = 0.5;
 /// Ends that were not found are worth a word from this share of the path on.
 constexpr double kLostShare = 0.1;
 /// The robot comes by again: nearer than this it sees the same ground twice [m].
@@ -29,10 +25,6 @@ constexpr double kSide = 4.0;
 constexpr double kMostAside = 10.0;
 /// What the place of a piece is off by [m].
 constexpr double kPieceDeviation = 0.005;
-/// Where a spline takes over from the pieces: samples for each of its nodes, and how little holds
-/// it where there are none.
-constexpr int kSamplesPerNode = 6;
-constexpr double kSlackOfSpline = 1e-6;
 /// Fewer pieces tell no bend in height.
 constexpr std::size_t kLeastLifted = 4;
 
@@ -165,51 +157,6 @@ std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen:
   return std::nullopt;
 }
 
-std::vector<double> anchorsOf(const deform::Path& path, const map::SignalMap& signals,
-                              const RegistrationOptions& options) {
-  const double step = 0.5 * std::min(options.search.max_length, path.length());
-  const auto count =
-      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(path.length() / step)) - 1);
-  const double even = path.length() / static_cast<double>(count + 1);
-  std::vector<double> energy(count + 1, 0.0);
-  for (int r = 0; r < signals.frame.rows; ++r) {
-    for (int c = 0; c < signals.frame.cols; ++c) {
-      if (signals.weight(r, c) <= 0.0F) continue;
-      const double at = path.place(signals.frame.centre(r, c)).along / even;
-      const auto half = static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count)));
-      for (const Raster<float>& channel : signals.channel) {
-        energy[half] += static_cast<double>(channel(r, c)) * static_cast<double>(channel(r, c));
-      }
-    }
-  }
-  struct Candidate {
-    double along, energy, off;
-    bool telling;
-  };
-  std::vector<Candidate> all;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double along = even * static_cast<double>(i + 1);
-    all.push_back({along, energy[i] + energy[i + 1], std::abs(along - 0.5 * path.length()), false});
-  }
-  const double most = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
-                        return a.energy < b.energy;
-                      })->energy;
-  for (Candidate& one : all) one.telling = one.energy >= kTelling * most;
-  std::stable_sort(all.begin(), all.end(), [&](const Candidate& a, const Candidate& b) {
-    if (a.telling != b.telling) return a.telling;
-    if (a.telling && !options.prior.anywhere()) return a.off < b.off;
-    return a.energy > b.energy;
-  });
-  std::vector<double> anchors;
-  for (const Candidate& one : all) {
-    const bool apart = std::all_of(anchors.begin(), anchors.end(), [&](double other) {
-      return std::abs(other - one.along) >= options.search.max_length;
-    });
-    if (apart && anchors.size() < kAnchors) anchors.push_back(one.along);
-  }
-  return anchors;
-}
-
 std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& path, double along,
                                     const RegistrationOptions& options) {
   const double half = 0.5 * std::min(options.search.max_length, path.length());
@@ -285,42 +232,12 @@ void followPieces(const FollowedPieces& followed, const deform::Path& path,
                   Placed& placed) {
   // The stated error of places along the strip needs that of the whole.
   if (!placed.uncertainty) return;
-  const Eigen::Affine2d& pose = placed.pose;
   const deform::Bend* more = placed.followed ? &placed.followed->bend : nullptr;
-  const auto displacementAt = [&](double along) {
-    const Eigen::Vector2d on_path = path.point(along);
-    const Eigen::Vector3d point(on_path.x(), on_path.y(), 0.0);
-    Eigen::Vector3d laid = followed.joined->bend.bent(point);
-    if (more != nullptr) laid = deform::unbent(laid, more->deformation, more->pose);
-    Eigen::Vector3d displacement = laid - point;
-    displacement.head<2>() = pose.linear() * displacement.head<2>();
-    return displacement;
-  };
-  const deform::SplineBasis basis(path.length(), options.bend.node);
-  const int samples = kSamplesPerNode * basis.size();
-  Eigen::MatrixXd normal = kSlackOfSpline * Eigen::MatrixXd::Identity(basis.size(), basis.size());
-  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(basis.size(), 3);
-  double sum2 = 0.0, most = 0.0;
-  for (int k = 0; k <= samples; ++k) {
-    const double along = path.length() * k / samples;
-    const deform::SplineBasis::At at = basis.at(along);
-    const Eigen::Vector3d displacement = displacementAt(along);
-    for (int i = 0; i < 4; ++i) {
-      right.row(at.first + i) += at.value[i] * displacement.transpose();
-      for (int j = 0; j < 4; ++j) normal(at.first + i, at.first + j) += at.value[i] * at.value[j];
-    }
-    sum2 += displacement.head<2>().squaredNorm();
-    most = std::max(most, displacement.head<2>().norm());
-  }
-  Eigen::Matrix2d turn = pose.linear();
-  turn.colwise().normalize();
-  deform::Bend bend{deform::Deformation(path, turn, basis), pose};
-  bend.deformation.coefficients = normal.ldlt().solve(right);
-  bend.deformation.covariance = kPieceDeviation * kPieceDeviation *
-                                Eigen::MatrixXd::Identity(2 * basis.size(), 2 * basis.size());
-  bend.deformation.height_deviation = kPieceDeviation;
-  bend.rms = std::sqrt(sum2 / (samples + 1));
-  bend.most = most;
+  deform::Bend bend = deform::bendThrough(
+      path, placed.pose, options.bend.node, kPieceDeviation, [&](const Eigen::Vector3d& point) {
+        const Eigen::Vector3d laid = followed.joined->bend.bent(point);
+        return more != nullptr ? deform::unbent(laid, more->deformation, more->pose) : laid;
+      });
   if (more != nullptr) bend.gain = more->gain;
   map::GridMap map = more != nullptr ? std::move(placed.followed->straight) : straight;
   placed.followed = Followed{std::move(bend), std::move(map)};

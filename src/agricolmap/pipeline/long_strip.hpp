@@ -22,12 +22,6 @@ std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen:
                                    const PairMaps& maps, const RegistrationOptions& options,
                                    Monitor& monitor);
 
-/// Where along the path a piece is looked for first, second and so on, as if it were all there is
-/// [m]: pieces that show much, those in the middle before others when there is a guess, since a
-/// wrong heading and scale move them least.
-std::vector<double> anchorsOf(const deform::Path& path, const map::SignalMap& signals,
-                              const RegistrationOptions& options);
-
 /// The maps of the piece about `along`, as long as the search looks for, and of what it can reach;
 /// nothing when the guess lays it beside the fixed map.
 std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& path, double along,

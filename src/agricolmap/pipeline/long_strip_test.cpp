@@ -8,7 +8,7 @@
 
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
-
+#include "agricolmap/pieces/anchors.hpp"
 namespace agricolmap::pipeline {
 namespace {
 
@@ -49,7 +49,8 @@ PairMaps pairOf(double length, double telling = -1e9) {
 
 std::vector<double> anchorsIn(const PairMaps& maps, const RegistrationOptions& options) {
   const deform::Path path({{0.0, 0.0}, {maps.moving_box.max().x(), 0.0}});
-  return anchorsOf(path, map::makeSignalMap(maps.moving, 1, options.signal), options);
+  return pieces::anchorsOf(path, map::makeSignalMap(maps.moving, 1, options.signal),
+                           options.search.max_length, !options.prior.anywhere());
 }
 
 TEST(LongStrip, IsLookedForInItsMiddleFirstWhereThereIsAGuess) {
