@@ -53,6 +53,26 @@ void shiftByRows(Case& made);
 /// A small field and a short strip of it.
 void shrink(Case& made);
 
+/// What stands in the settings that pairs may be of; no two should have a value in common.
+template <typename Value>
+const Value& pick(Settings settings, const Value& develop, const Value& calibrate,
+                  const Value& final) {
+  if (settings == Settings::kDevelop) return develop;
+  return settings == Settings::kCalibrate ? calibrate : final;
+}
+
+/// One option's values in each of the settings, drawn from for each pair.
+struct Drawn {
+  const char* path;
+  std::vector<double> develop;
+  std::vector<double> calibrate;
+  std::vector<double> final;
+
+  OptionRange in(Settings settings) const {
+    return {path, 0.0, 0.0, pick(settings, develop, calibrate, final)};
+  }
+};
+
 std::vector<Case> paperCases(const SuiteOptions& options);
 std::vector<Case> locateCases(const SuiteOptions& options);  ///< of kFinal and kDevelop
 std::vector<Case> calibrateCases(const SuiteOptions& options);

@@ -10,14 +10,6 @@
 namespace agricolmap::experiments {
 namespace {
 
-/// One option's values in each of the settings.
-struct Drawn {
-  const char* path;
-  std::vector<double> develop;
-  std::vector<double> calibrate;
-  std::vector<double> final;
-};
-
 /// One way in which fields or flights differ from the presets.
 struct Kind {
   const char* name;
@@ -152,8 +144,8 @@ class Builder {
         cropCase(fmt::format("{}{}-{}-{}-{}", prefix(), what, kind.name, guess.name, crop.name),
                  crop.crop, kPaperGuess, options_.uniform);
     made.strips_per_field = kStrips;
-    made.options.field.row_spacing *= pick(0.88, 1.06, 0.96);
-    made.options.field.plant_spacing *= pick(1.15, 0.94, 1.04);
+    made.options.field.row_spacing *= pick(options_.settings, 0.88, 1.06, 0.96);
+    made.options.field.plant_spacing *= pick(options_.settings, 1.15, 0.94, 1.04);
     for (const std::vector<Drawn>* all : {&usual(), &kind.drawn}) {
       for (const Drawn& one : *all) add(one, made);
     }
@@ -163,18 +155,13 @@ class Builder {
   }
 
  private:
-  template <typename Value>
-  const Value& pick(const Value& develop, const Value& calibrate, const Value& final) const {
-    if (options_.settings == Settings::kDevelop) return develop;
-    return options_.settings == Settings::kCalibrate ? calibrate : final;
-  }
   std::string prefix() const {
-    return pick<std::string>("dev-elsewhere-", "cal-elsewhere-", "elsewhere-");
+    return pick<std::string>(options_.settings, "dev-elsewhere-", "cal-elsewhere-", "elsewhere-");
   }
   /// A kind's own values replace the usual ones.
   void add(const Drawn& one, Case& made) const {
     std::erase_if(made.ranges, [&](const OptionRange& range) { return range.path == one.path; });
-    made.ranges.push_back({one.path, 0.0, 0.0, pick(one.develop, one.calibrate, one.final)});
+    made.ranges.push_back(one.in(options_.settings));
   }
 
   SuiteOptions options_;

@@ -10,14 +10,6 @@
 namespace agricolmap::experiments {
 namespace {
 
-/// One option's values in each of the settings.
-struct Drawn {
-  const char* path;
-  std::vector<double> develop;
-  std::vector<double> calibrate;
-  std::vector<double> final;
-};
-
 struct Kind {
   const char* name;
   simulate::Crop crop;
@@ -93,7 +85,7 @@ class Builder {
     // What the drone's own map is off by no registration can tell.
     made.options.uav.dome = 0.0;
     for (const std::vector<Drawn>* all : {&drone(), &views(hard), &kind.drawn}) {
-      for (const Drawn& one : *all) made.ranges.push_back({one.path, 0.0, 0.0, values(one)});
+      for (const Drawn& one : *all) made.ranges.push_back(one.in(options_.settings));
     }
     return made;
   }
@@ -113,10 +105,6 @@ class Builder {
   static const char* viewName(bool hard) { return hard ? "hard" : "fair"; }
   std::string prefix() const {
     return options_.settings == Settings::kFinal ? "" : toString(options_.settings) + "-";
-  }
-  const std::vector<double>& values(const Drawn& one) const {
-    if (options_.settings == Settings::kDevelop) return one.develop;
-    return options_.settings == Settings::kCalibrate ? one.calibrate : one.final;
   }
 
   SuiteOptions options_;

@@ -14,22 +14,15 @@ constexpr int kStrips = 3;       // of a field
 constexpr double kRoom = 6.0;    // of the field beyond the strip [m]
 constexpr double kHectare = 90;  // longer strips are flown higher, and drawn in coarser cells [m]
 
-template <typename Value>
-const Value& pick(const SuiteOptions& options, const Value& develop, const Value& calibrate,
-                  const Value& final) {
-  if (options.settings == Settings::kDevelop) return develop;
-  return options.settings == Settings::kCalibrate ? calibrate : final;
-}
-
 std::string prefix(const SuiteOptions& options) {
-  return pick<std::string>(options, "dev-", "cal-", "");
+  return pick<std::string>(options.settings, "dev-", "cal-", "");
 }
 
 Case fieldCase(const SuiteOptions& options, std::string name, simulate::Crop crop) {
   Case made = cropCase(std::move(name), crop, kPaperGuess, options.uniform);
   made.strips_per_field = kStrips;
-  made.options.field.row_spacing *= pick(options, 0.91, 1.09, 1.03);
-  made.options.field.plant_spacing *= pick(options, 1.12, 0.93, 1.06);
+  made.options.field.row_spacing *= pick(options.settings, 0.91, 1.09, 1.03);
+  made.options.field.plant_spacing *= pick(options.settings, 1.12, 0.93, 1.06);
   return made;
 }
 
@@ -50,16 +43,9 @@ Case longCase(const SuiteOptions& options, const NamedCrop& crop, double length,
   return made;
 }
 
-/// Values of one option.
-struct Shape {
-  const char* path;
-  std::vector<double> develop;
-  std::vector<double> calibrate;
-  std::vector<double> final;
-};
 struct Terrain {
   const char* name;
-  std::vector<Shape> shapes;
+  std::vector<Drawn> shapes;
 };
 
 const std::vector<Terrain>& terrains() {
@@ -83,8 +69,8 @@ const std::vector<Terrain>& terrains() {
 }  // namespace
 
 std::vector<Case> longCases(const SuiteOptions& options) {
-  const auto drifts =
-      pick<std::vector<double>>(options, {0.006, 0.016}, {0.008, 0.018}, {0.005, 0.01, 0.02});
+  const auto drifts = pick<std::vector<double>>(options.settings, {0.006, 0.016}, {0.008, 0.018},
+                                                {0.005, 0.01, 0.02});
   std::vector<Case> cases;
   for (const double length : {20.0, 40.0, 100.0}) {
     for (const NamedCrop& crop : namedCrops()) {
@@ -102,7 +88,7 @@ std::vector<Case> longCases(const SuiteOptions& options) {
       cases.back().options.other_field = true;
       cases.push_back(longCase(options, crop, length, drifts.front(), "back-"));
       cases.back().options.ugv.back = true;
-      cases.back().options.ugv.back_aside = pick(options, 2.1, 1.7, 1.9);
+      cases.back().options.ugv.back_aside = pick(options.settings, 2.1, 1.7, 1.9);
     }
   }
   return cases;
@@ -116,9 +102,8 @@ std::vector<Case> terrainCases(const SuiteOptions& options) {
       Case made = fieldCase(
           options, fmt::format("{}terrain-{}-{}", prefix(options), terrain.name, crop.name),
           crop.crop);
-      for (const Shape& shape : terrain.shapes) {
-        made.ranges.push_back(
-            {shape.path, 0.0, 0.0, pick(options, shape.develop, shape.calibrate, shape.final)});
+      for (const Drawn& shape : terrain.shapes) {
+        made.ranges.push_back(shape.in(options.settings));
       }
       cases.push_back(std::move(made));
     }
