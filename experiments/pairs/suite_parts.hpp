@@ -55,8 +55,7 @@ void shrink(Case& made);
 
 /// What stands in the settings that pairs may be of; no two should have a value in common.
 template <typename Value>
-const Value& pick(Settings settings, const Value& develop, const Value& calibrate,
-                  const Value& final) {
+Value pick(Settings settings, const Value& develop, const Value& calibrate, const Value& final) {
   if (settings == Settings::kDevelop) return develop;
   return settings == Settings::kCalibrate ? calibrate : final;
 }

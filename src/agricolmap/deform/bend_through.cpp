@@ -41,8 +41,9 @@ Bend bendThrough(const Path& path, const Eigen::Affine2d& pose, double node, dou
             .rms = std::sqrt(sum2 / (places + 1)),
             .most = most};
   bend.deformation.coefficients = normal.ldlt().solve(right);
+  const Eigen::Index unknowns = Eigen::Index{2} * basis.size();
   bend.deformation.covariance =
-      deviation * deviation * Eigen::MatrixXd::Identity(2 * basis.size(), 2 * basis.size());
+      deviation * deviation * Eigen::MatrixXd::Identity(unknowns, unknowns);
   bend.deformation.height_deviation = deviation;
   return bend;
 }

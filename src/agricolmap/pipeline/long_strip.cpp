@@ -239,8 +239,11 @@ void followPieces(const FollowedPieces& followed, const deform::Path& path,
         return more != nullptr ? deform::unbent(laid, more->deformation, more->pose) : laid;
       });
   if (more != nullptr) bend.gain = more->gain;
-  map::GridMap map = more != nullptr ? std::move(placed.followed->straight) : straight;
-  placed.followed = Followed{std::move(bend), std::move(map)};
+  if (more == nullptr) {
+    placed.followed = Followed{std::move(bend), straight};
+  } else {
+    placed.followed->bend = std::move(bend);
+  }
 }
 
 std::string describe(const FollowedPieces& followed) {
