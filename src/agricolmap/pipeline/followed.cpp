@@ -26,7 +26,7 @@ std::vector<deform::PieceOffset> piecesOf(const verdict::PartsReport& parts) {
 
 /// Whether the strip, bend taken out, is one and fits no worse.
 bool fitsAsOne(const Placed& straight, const Placed& bent) {
-  return straight.uncertainty && !straight.evidence.parts.apart() &&
+  return straight.uncertainty && bent.uncertainty && !straight.evidence.parts.apart() &&
          straight.heights.status == refine::VerticalStatus::kOk &&
          straight.evidence.agreement() >= bent.evidence.agreement() - 1e-9 &&
          straight.evidence.significance >= kLeastKept * bent.evidence.significance &&
@@ -74,7 +74,8 @@ void followBends(const refine::PairSignals& signals, const SearchSpace& space,
   verdict::discountFreedom(next.evidence, placed.evidence.significance,
                            freedomOf(followed.bend.deformation));
   next.uncertainty->expected_rms =
-      std::hypot(next.uncertainty->expected_rms, deform::slipRms(followed.bend.deformation));
+      std::hypot(next.uncertainty->expected_rms, deform::slipRms(followed.bend.deformation),
+                 verdict::doubtOfBend(followed.bend.rms, *placed.uncertainty, *next.uncertainty));
   next.followed = std::move(followed);
   placed = std::move(next);
 }

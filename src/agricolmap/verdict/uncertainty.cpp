@@ -59,6 +59,11 @@ Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight(double turn) c
   return with_height;
 }
 
+double doubtOfBend(double rms, const PoseUncertainty& bent, const PoseUncertainty& straight) {
+  if (!(bent.local_rms > 0.0)) return 0.0;
+  return rms * std::min(1.0, straight.local_rms / bent.local_rms);
+}
+
 Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix2d& of_fit) {
   const double common = 0.5 * pose.systematic_rms * pose.systematic_rms + kCommon * kCommon;
   return of_fit + common * Eigen::Matrix2d::Identity();

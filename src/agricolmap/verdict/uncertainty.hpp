@@ -54,6 +54,11 @@ struct PoseUncertainty {
   }
 };
 
+/// What a bend of this root mean square [m] may be wrong by [m]. One that lays the blocks straight,
+/// by little; one that leaves them nearly as far apart as they were follows what plants did between
+/// the views as well as the path, and is as doubtful as it is large.
+double doubtOfBend(double rms, const PoseUncertainty& bent, const PoseUncertainty& straight);
+
 /// Covariance of a place of a strip whose bend is followed [m²]: what the fit of the bend says of
 /// it, and what all blocks may have in common.
 Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix2d& of_fit);

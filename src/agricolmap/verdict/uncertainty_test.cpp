@@ -111,5 +111,18 @@ TEST(Uncertainty, NeedsBlocks) {
       estimateUncertainty(fixed, moving, Eigen::Affine2d::Identity(), evidence, {}, 0.0, 0.0, {}));
 }
 
+TEST(DoubtOfBend, IsThatOfWhatTheBendLeaves) {
+  PoseUncertainty bent, straight;
+  bent.local_rms = 0.04;
+  straight.local_rms = 0.01;  // drift of dead reckoning, and little else
+  EXPECT_DOUBLE_EQ(doubtOfBend(0.03, bent, straight), 0.0075);
+  straight.local_rms = 0.035;  // plants that grew
+  EXPECT_GT(doubtOfBend(0.03, bent, straight), 0.025);
+  straight.local_rms = 0.05;
+  EXPECT_DOUBLE_EQ(doubtOfBend(0.03, bent, straight), 0.03);
+  bent.local_rms = 0.0;
+  EXPECT_EQ(doubtOfBend(0.03, bent, straight), 0.0);
+}
+
 }  // namespace
 }  // namespace agricolmap::verdict
