@@ -231,6 +231,29 @@ TEST(RegisterClouds, FindsThePlaceAndSaysHowSureItIs) {
   EXPECT_EQ(result.warnings, pair.moving.warnings);
 }
 
+TEST(RegisterClouds, TakesThePathOfTheRobot) {
+  const Pair pair = readPair("same_field");
+  // From corner to corner.
+  const auto [west, east] =
+      std::minmax_element(pair.moving.xyz.begin(), pair.moving.xyz.end(),
+                          [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  const std::filesystem::path file = freshFolder("path") / "path.txt";
+  std::ofstream out(file);
+  out.precision(12);
+  for (const auto& end : {*west, *east}) {
+    out << (end.cast<double>() + pair.moving.origin).transpose() << "\n";
+  }
+  out.close();
+  const std::vector<Eigen::Vector3d> path = readPath(file);
+  ASSERT_EQ(path.size(), 2U);
+  const Registration result = registerClouds(pair.fixed, pair.moving, pair.guess, {}, {}, path);
+  EXPECT_TRUE(result.accepted());
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings.front().find("the path makes no difference"), std::string::npos);
+  std::ofstream(file) << "one place\n";
+  expectError<InputError>([&] { readPath(file); }, "path.txt", ErrorKind::kInput);
+}
+
 TEST(RegisterClouds, RejectsAnotherField) {
   const Pair pair = readPair("other_field");
   const Registration result = registerClouds(pair.fixed, pair.moving, pair.guess);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "agricolmap/cloud.hpp"
 #include "agricolmap/export.hpp"
@@ -39,6 +40,10 @@ AGRICOLMAP_EXPORT Transform readMatrix(const std::filesystem::path& path);
 /// Writes 17 significant digits: what is read back is the same to the bit. Throws OutputError.
 AGRICOLMAP_EXPORT void writeMatrix(const std::filesystem::path& path,
                                    const Transform& target_from_source);
+
+/// The places of a robot in order of driving, for `registerClouds`: lines `x y`, `x y z`,
+/// `t x y z` or `t x y z qx qy qz qw`, or columns under a line of names. Throws InputError.
+AGRICOLMAP_EXPORT std::vector<Eigen::Vector3d> readPath(const std::filesystem::path& path);
 
 /// World from cloud, by the geotag beside a cloud's file: `<stem>.offset.xyz`, else `offset.xyz` in
 /// its folder, else nothing. Throws InputError.

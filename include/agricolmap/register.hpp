@@ -4,6 +4,7 @@
 #include <functional>
 #include <stop_token>
 #include <string_view>
+#include <vector>
 
 #include "agricolmap/cloud.hpp"
 #include "agricolmap/export.hpp"
@@ -23,6 +24,8 @@ struct Control {
 /// Finds the transformation that lays `moving` (the ground robot's cloud) into `fixed` (the
 /// drone's). `guess`: moving file → fixed file coordinates, as wrong as `options.prior()` allows.
 /// z points up to within 45° in both; they need colours unless the option `geometry_only` is set.
+/// `path`: where the robot drove, in order, in the moving file's coordinates; it serves strips
+/// longer than the option `pieces.from` whose shape does not tell it. Empty: the shape must.
 ///
 /// Throws InputError for clouds that cannot be used, UsageError for options that make no sense
 /// beside one another or would do nothing, Interrupted. A registration that fails is a rejected
@@ -30,7 +33,8 @@ struct Control {
 AGRICOLMAP_EXPORT Registration registerClouds(const Cloud& fixed, const Cloud& moving,
                                               const Transform& guess,
                                               const Options& options = Options(),
-                                              const Control& control = {});
+                                              const Control& control = {},
+                                              const std::vector<Eigen::Vector3d>& path = {});
 
 /// The moving cloud where a registration lays it, in the fixed file's coordinates: transformation
 /// and deformation. Throws UsageError for a registration without a transformation.

@@ -11,6 +11,7 @@
 #include "agricolmap/io/cloud/point_source.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
+#include "agricolmap/io/text/path_file.hpp"
 
 namespace agricolmap {
 
@@ -53,6 +54,10 @@ Transform readMatrix(const std::filesystem::path& path) { return io::readMatrix(
 
 void writeMatrix(const std::filesystem::path& path, const Transform& target_from_source) {
   io::writeMatrix(path, Eigen::Affine3d(target_from_source));
+}
+
+std::vector<Eigen::Vector3d> readPath(const std::filesystem::path& path) {
+  return io::readPath(path);
 }
 
 std::optional<Transform> readOffsetBeside(const std::filesystem::path& cloud) {

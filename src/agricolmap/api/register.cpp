@@ -198,7 +198,8 @@ const char* toString(Registration::Status status) {
 }
 
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Transform& guess,
-                            const Options& options, const Control& control) {
+                            const Options& options, const Control& control,
+                            const std::vector<Eigen::Vector3d>& path) {
   requireProcessor();
   requireWhole(fixed);
   requireWhole(moving);
@@ -212,7 +213,7 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
   });
   auto record = std::make_shared<Registration::Record>();
   record->found =
-      pipeline::registerClouds(fixed, moving, Eigen::Affine3d(guess), in_force, monitor);
+      pipeline::registerClouds(fixed, moving, Eigen::Affine3d(guess), in_force, monitor, {}, path);
   record->evidence = in_force.evidence;
   record->fixed_name = fixed.name;
   record->moving_name = moving.name;
