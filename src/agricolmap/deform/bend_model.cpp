@@ -32,8 +32,8 @@ BendModel::BendModel(const SplineBasis& basis, std::vector<double> slips, const 
   straight_ = Eigen::MatrixXd::Zero(size(), 4);
   for (int i = 0; i < basis_.size(); ++i) {
     const double along = basis_.place(i) / basis_.length() - 0.5;
-    straight_.block<2, 2>(2 * i, 0).setIdentity();
-    straight_.block<2, 2>(2 * i, 2) = along * Eigen::Matrix2d::Identity();
+    straight_.block<2, 2>(unknownOf(i), 0).setIdentity();
+    straight_.block<2, 2>(unknownOf(i), 2) = along * Eigen::Matrix2d::Identity();
   }
 }
 
@@ -45,13 +45,13 @@ std::vector<BinMotion> BendModel::motions(const Eigen::VectorXd& coefficients) c
     const double middle = layout.middle(bin);
     const SplineBasis::At at = basis_.at(middle);
     for (int i = 0; i < 4; ++i) {
-      const Eigen::Vector2d c = coefficients.segment<2>(2 * (at.first + i));
+      const Eigen::Vector2d c = coefficients.segment<2>(unknownOf(at.first + i));
       motion.shift += at.value[static_cast<std::size_t>(i)] * c;
       motion.slope += at.slope[static_cast<std::size_t>(i)] * c;
     }
     for (std::size_t k = 0; k < slips_.size(); ++k) {
       if (middle < slips_[k]) continue;
-      motion.shift += coefficients.segment<2>(2 * (basis_.size() + static_cast<int>(k)));
+      motion.shift += coefficients.segment<2>(unknownOf(basis_.size() + static_cast<int>(k)));
     }
   }
   return motions;
@@ -71,26 +71,27 @@ void BendModel::add(int bin, const BinSums& sums, Equations& equations) const {
   Eigen::Matrix<double, 3, 8> j;
   for (int i = 0; i < 4; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    j.col(2 * i) << at.value[k] * ahead.x(), at.value[k] * left.x(), at.slope[k] * left.x();
-    j.col(2 * i + 1) << at.value[k] * ahead.y(), at.value[k] * left.y(), at.slope[k] * left.y();
+    j.col(unknownOf(i)) << at.value[k] * ahead.x(), at.value[k] * left.x(), at.slope[k] * left.x();
+    j.col(unknownOf(i) + 1) << at.value[k] * ahead.y(), at.value[k] * left.y(),
+        at.slope[k] * left.y();
   }
   Eigen::Matrix<double, 3, 2> jump = Eigen::Matrix<double, 3, 2>::Zero();
   jump.row(0) = ahead.transpose();
   jump.row(1) = left.transpose();
-  const int first = 2 * at.first;
+  const Eigen::Index first = unknownOf(at.first);
   const Eigen::Matrix<double, 3, 8> weighted = sums.normal * j;
   equations.right.segment<8>(first) += j.transpose() * sums.right;
   equations.normal.block<8, 8>(first, first) += j.transpose() * weighted;
   for (std::size_t k = 0; k < slips_.size(); ++k) {
     if (middle < slips_[k]) continue;
-    const int slip = 2 * (basis_.size() + static_cast<int>(k));
+    const Eigen::Index slip = unknownOf(basis_.size() + static_cast<int>(k));
     equations.right.segment<2>(slip) += jump.transpose() * sums.right;
     const Eigen::Matrix<double, 2, 8> mixed = jump.transpose() * weighted;
     equations.normal.block<2, 8>(slip, first) += mixed;
     equations.normal.block<8, 2>(first, slip) += mixed.transpose();
     for (std::size_t m = 0; m < slips_.size(); ++m) {
       if (middle < slips_[m]) continue;
-      equations.normal.block<2, 2>(slip, 2 * (basis_.size() + static_cast<int>(m))) +=
+      equations.normal.block<2, 2>(slip, unknownOf(basis_.size() + static_cast<int>(m))) +=
           jump.transpose() * sums.normal * jump;
     }
   }

@@ -41,7 +41,7 @@ Bend bendThrough(const Path& path, const Eigen::Affine2d& pose, double node, dou
             .rms = std::sqrt(sum2 / (places + 1)),
             .most = most};
   bend.deformation.coefficients = normal.ldlt().solve(right);
-  const Eigen::Index unknowns = Eigen::Index{2} * basis.size();
+  const Eigen::Index unknowns = unknownOf(basis.size());
   bend.deformation.covariance =
       deviation * deviation * Eigen::MatrixXd::Identity(unknowns, unknowns);
   bend.deformation.height_deviation = deviation;

@@ -216,7 +216,7 @@ Bend bendOf(const Fitted& fitted, const Path& path, const SplineBasis& basis,
   Deformation& deformation = bend.deformation;
   for (int i = 0; i < basis.size(); ++i) {
     deformation.coefficients.row(i).head<2>() =
-        fitted.fit.coefficients.segment<2>(Eigen::Index{2} * i).transpose();
+        fitted.fit.coefficients.segment<2>(unknownOf(i)).transpose();
   }
   // Those that were found last may lie before others.
   std::vector<std::size_t> order(fitted.slips.size());

@@ -46,13 +46,12 @@ Eigen::Matrix2d Deformation::covarianceAt(const Eigen::Vector2d& moving) const {
   const Eigen::Vector2d left(-ahead.y(), ahead.x());
   Eigen::Matrix2Xd j = Eigen::Matrix2Xd::Zero(2, covariance.cols());
   for (int i = 0; i < 4; ++i) {
-    j.middleCols<2>(Eigen::Index{2} * (at.first + i)) =
-        at.value[i] * Eigen::Matrix2d::Identity() -
-        place.aside * at.slope[i] * ahead * left.transpose();
+    j.middleCols<2>(unknownOf(at.first + i)) = at.value[i] * Eigen::Matrix2d::Identity() -
+                                               place.aside * at.slope[i] * ahead * left.transpose();
   }
   for (std::size_t k = 0; k < slips.size(); ++k) {
     if (place.along < slips[k].along) continue;
-    j.middleCols<2>(Eigen::Index{2} * (basis_.size() + static_cast<int>(k))).setIdentity();
+    j.middleCols<2>(unknownOf(basis_.size() + static_cast<int>(k))).setIdentity();
   }
   Eigen::Matrix2d result = j * covariance * j.transpose();
   if (!slips.empty()) result += kBesideSlips * kBesideSlips * Eigen::Matrix2d::Identity();

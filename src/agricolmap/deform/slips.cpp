@@ -41,12 +41,12 @@ Eigen::VectorXd throughPieces(const BendModel& model, const std::vector<PieceOff
     Eigen::Matrix2Xd j = Eigen::Matrix2Xd::Zero(2, model.size());
     const SplineBasis::At at = model.basis().at(piece.along);
     for (int i = 0; i < 4; ++i) {
-      j.middleCols<2>(2 * (at.first + i)) =
+      j.middleCols<2>(unknownOf(at.first + i)) =
           at.value[static_cast<std::size_t>(i)] * Eigen::Matrix2d::Identity();
     }
     for (std::size_t k = 0; k < model.slips().size(); ++k) {
       if (piece.along < model.slips()[k]) continue;
-      j.middleCols<2>(2 * (model.basis().size() + static_cast<int>(k))).setIdentity();
+      j.middleCols<2>(unknownOf(model.basis().size() + static_cast<int>(k))).setIdentity();
     }
     normal += kWeight * j.transpose() * j;
     right += kWeight * j.transpose() * piece.offset;

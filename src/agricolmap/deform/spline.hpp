@@ -1,6 +1,7 @@
 // A uniform cubic B-spline over path length.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,5 +50,9 @@ class SplineBasis {
   int spans_;
   double spacing_;
 };
+
+/// Where x of a coefficient stands among unknowns of which each coefficient, and then each slip,
+/// has x and y; y is the next.
+inline Eigen::Index unknownOf(int coefficient) { return Eigen::Index{2} * coefficient; }
 
 }  // namespace agricolmap::deform
