@@ -21,7 +21,7 @@ enum class SignalTerm {
 };
 
 struct SignalOptions {
-  double high_pass = 0.8;  ///< wavelength above which variation is taken out [m]
+  double high_pass = 1.2;  ///< wavelength above which variation is taken out [m]
   double clip = 4.0;       ///< values beyond this many deviations are cut
   SignalTerm term = SignalTerm::kAll;
 };

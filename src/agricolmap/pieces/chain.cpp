@@ -264,6 +264,18 @@ double significanceOf(const std::vector<PiecePose>& chain) {
   return std::sqrt(sum2);
 }
 
+double deviationOf(const std::vector<PiecePose>& chain, const deform::Path& path) {
+  double sum2 = 0.0, pairs = 0.0;
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    if (!chain[i - 1].held || !chain[i].held) continue;
+    const Eigen::Vector2d shared = path.point(0.5 * (chain[i].from + chain[i - 1].to));
+    sum2 += (chain[i].pose * shared - chain[i - 1].pose * shared).squaredNorm();
+    pairs += 1.0;
+  }
+  // Two axes of two pieces each.
+  return pairs > 0.0 ? std::sqrt(sum2 / (4.0 * pairs)) : 0.0;
+}
+
 std::optional<Joined> joined(const std::vector<PiecePose>& chain, const deform::Path& path,
                              double half_width) {
   std::vector<const PiecePose*> held;

@@ -48,6 +48,10 @@ std::vector<PiecePose> followPath(const refine::PairSignals& signals, const defo
 /// second is new.
 double significanceOf(const std::vector<PiecePose>& chain);
 
+/// What the place of a piece is off by, per axis [m]: from where neighbours that were found lay the
+/// middle of what they share. 0 when no two are neighbours.
+double deviationOf(const std::vector<PiecePose>& chain, const deform::Path& path);
+
 /// A chain as one pose and what bends the strip so that it lies as its pieces do.
 struct Joined {
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< that is best for all pieces

@@ -83,6 +83,19 @@ TEST(FollowPath, GoesOnBehindASlip) {
   EXPECT_LT((last.pose * place - scene.pose * place - Eigen::Vector2d(0.1, 0.5)).norm(), 0.03);
 }
 
+TEST(DeviationOf, IsWhatNeighboursLayTheSharedApartBy) {
+  const deform::Path path({{0.0, 0.0}, {20.0, 0.0}});
+  std::vector<PiecePose> chain = cutPath(20.0, kPieces);
+  EXPECT_EQ(deviationOf(chain, path), 0.0);  // none was found
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    chain[i].held = true;
+    chain[i].pose = Eigen::Translation2d(i % 2 == 0 ? 0.01 : -0.01, 0.0);
+  }
+  EXPECT_NEAR(deviationOf(chain, path), 0.01, 1e-12);  // 2 cm apart along, 0 across
+  for (PiecePose& piece : chain) piece.pose = Eigen::Rotation2Dd(0.1);
+  EXPECT_NEAR(deviationOf(chain, path), 0.0, 1e-12);
+}
+
 TEST(FollowPath, WhatLiesNowhereIsNotHeld) {
   // Farther than any piece is looked for.
   const TestScene scene =

@@ -23,7 +23,7 @@ constexpr double kTwiceShare = 0.3;
 constexpr double kSide = 4.0;
 /// Rivals of a long strip are looked for so far from it at most [m].
 constexpr double kMostAside = 10.0;
-/// What the place of a piece is off by [m].
+/// What the place of a piece is off by at least: neighbours share half of what they see [m].
 constexpr double kPieceDeviation = 0.005;
 /// Fewer pieces tell no bend in height.
 constexpr std::size_t kLeastLifted = 4;
@@ -233,8 +233,9 @@ void followPieces(const FollowedPieces& followed, const deform::Path& path,
   // The stated error of places along the strip needs that of the whole.
   if (!placed.uncertainty) return;
   const deform::Bend* more = placed.followed ? &placed.followed->bend : nullptr;
+  const double deviation = std::max(kPieceDeviation, pieces::deviationOf(followed.chain, path));
   deform::Bend bend = deform::bendThrough(
-      path, placed.pose, options.bend.node, kPieceDeviation, [&](const Eigen::Vector3d& point) {
+      path, placed.pose, options.bend.node, deviation, [&](const Eigen::Vector3d& point) {
         const Eigen::Vector3d laid = followed.joined->bend.bent(point);
         return more != nullptr ? deform::unbent(laid, more->deformation, more->pose) : laid;
       });
