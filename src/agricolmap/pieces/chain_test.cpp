@@ -10,7 +10,6 @@
 namespace agricolmap::pieces {
 namespace {
 
-using testing::shifted;
 using testing::TestField;
 using testing::TestScene;
 
