@@ -73,9 +73,15 @@ void followBends(const refine::PairSignals& signals, const SearchSpace& space,
   if (!fitsAsOne(next, placed)) return;
   verdict::discountFreedom(next.evidence, placed.evidence.significance,
                            freedomOf(followed.bend.deformation));
+  const double doubt =
+      verdict::doubtOfBend(followed.bend.rms, *placed.uncertainty, *next.uncertainty);
+  // One that with its doubt leaves the blocks as far apart as they were moves points for nothing.
+  if (!placed.evidence.parts.apart() &&
+      std::hypot(next.uncertainty->local_rms, doubt) >= placed.uncertainty->local_rms) {
+    return;
+  }
   next.uncertainty->expected_rms =
-      std::hypot(next.uncertainty->expected_rms, deform::slipRms(followed.bend.deformation),
-                 verdict::doubtOfBend(followed.bend.rms, *placed.uncertainty, *next.uncertainty));
+      std::hypot(next.uncertainty->expected_rms, deform::slipRms(followed.bend.deformation), doubt);
   next.followed = std::move(followed);
   placed = std::move(next);
 }
