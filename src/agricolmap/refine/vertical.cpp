@@ -117,7 +117,6 @@ Tilted fitTilt(const std::vector<GroundCell>& cells, const std::vector<double>& 
                double robust) {
   using Parameters = Eigen::Vector4d;  // height of the ground, of the surface; tilt
   Tilted fit;
-  double surface = median(std::vector<double>(of_surface));
   std::vector<double> on_ground(cells.size()), on_surface(cells.size());
   std::vector<double> ground_weights = ground;
   std::vector<double> surface_weights(cells.size(), kSurfaceWeight);
@@ -136,10 +135,9 @@ Tilted fitTilt(const std::vector<GroundCell>& cells, const std::vector<double>& 
     }
     const Parameters found = normal.ldlt().solve(right);
     fit.plane << found[0], found[2], found[3];
-    surface = found[1];
     for (std::size_t i = 0; i < cells.size(); ++i) {
       on_ground[i] = fit.residual(cells[i], of_ground[i]);
-      on_surface[i] = fit.residual(cells[i], of_surface[i]) + found[0] - surface;
+      on_surface[i] = fit.residual(cells[i], of_surface[i]) + found[0] - found[1];
     }
     fit.deviation = groundDeviation(on_ground, ground);
     std::vector<double> distances(on_surface);
