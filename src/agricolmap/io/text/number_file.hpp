@@ -14,7 +14,8 @@ struct NumberFile {
 };
 
 /// All numbers of a file, finite, separated by blanks, commas, semicolons or brackets; `#` begins a
-/// comment. Throws InputError with file and line.
+/// comment. Beside semicolons a comma between digits is a decimal mark; where it may be that or a
+/// separator, the line is refused. Throws InputError with file and line.
 NumberFile readNumbers(const std::filesystem::path& path);
 
 /// With as many digits as it takes to read the same double again.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "agricolmap/core/angles.hpp"
@@ -51,7 +50,7 @@ std::optional<Eigen::Affine3d> readOffsetBeside(const std::filesystem::path& clo
   return std::nullopt;
 }
 
-void writeOffset(const OutputPath& path, const Eigen::Affine3d& world_from_cloud) {
+std::string offsetLine(const Eigen::Affine3d& world_from_cloud) {
   const Eigen::Matrix3d r = world_from_cloud.linear();
   const double skew = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(skew < kRigidTolerance) || r.determinant() < 0.0) {
@@ -63,15 +62,18 @@ void writeOffset(const OutputPath& path, const Eigen::Affine3d& world_from_cloud
   const double roll = locked ? 0.0 : std::atan2(r(2, 1), r(2, 2));
   const double yaw = locked ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
   const Eigen::Vector3d t = world_from_cloud.translation();
-  std::string text =
-      "# x y z [m] roll pitch yaw [deg]: world_from_cloud = T Rz(yaw) Ry(pitch) "
-      "Rx(roll)\n";
-  const std::array values{t.x(), t.y(), t.z(), degrees(roll), degrees(pitch), degrees(yaw)};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) text += ' ';
-    text += exactText(values[i]);
+  std::string text;
+  for (const double value : {t.x(), t.y(), t.z(), degrees(roll), degrees(pitch), degrees(yaw)}) {
+    if (!text.empty()) text += ' ';
+    text += exactText(value + 0.0);  // no minus before zeros
   }
-  writeText(path, text + "\n");
+  return text;
+}
+
+void writeOffset(const OutputPath& path, const Eigen::Affine3d& world_from_cloud) {
+  writeText(path,
+            "# x y z [m] roll pitch yaw [deg]: world_from_cloud = T Rz(yaw) Ry(pitch) Rx(roll)\n" +
+                offsetLine(world_from_cloud) + "\n");
 }
 
 }  // namespace agricolmap::io

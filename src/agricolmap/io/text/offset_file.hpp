@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "agricolmap/io/output/output_path.hpp"
 
@@ -22,6 +23,9 @@ Eigen::Affine3d readOffset(const std::filesystem::path& path);
 /// The offset beside a cloud: `<stem>.offset.xyz` in the cloud's folder, else `offset.xyz` there,
 /// else nothing.
 std::optional<Eigen::Affine3d> readOffsetBeside(const std::filesystem::path& cloud_file);
+
+/// The line of an offset file, six numbers. Throws UsageError when `world_from_cloud` is not rigid.
+std::string offsetLine(const Eigen::Affine3d& world_from_cloud);
 
 /// Writes an offset file with six numbers that read back the same to rounding. Throws UsageError
 /// when `world_from_cloud` is not rigid, OutputError when it cannot be written.
