@@ -19,14 +19,8 @@ constexpr std::size_t kMaxBytes = 1U << 16;
 
 }  // namespace
 
-NumberFile readNumbers(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  const std::string foreign = describeForeign(file.text());
-  if (!foreign.empty()) throw InputError(fmt::format("{}: {}", path.string(), foreign));
-  std::string text(withoutMark(file.text()).substr(0, kMaxBytes + 1));
-  if (text.size() > kMaxBytes) {
-    throw InputError(fmt::format("{}: too long for a file of a few numbers", path.string()));
-  }
+NumberFile numbersIn(std::string_view whole_text, const std::string& name) {
+  std::string text(whole_text);
   std::replace_if(
       text.begin(), text.end(),
       [](char c) { return std::string_view("[](){}").find(c) != std::string_view::npos; }, ' ');
@@ -37,21 +31,31 @@ NumberFile readNumbers(const std::filesystem::path& path) {
     const std::string_view whole = takeLine(rest, line_end);
     const NumberWords numbers(whole.substr(0, whole.find('#')));
     if (numbers.ambiguous()) {
-      throw InputError(fmt::format("{}: line {}: {}", path.string(), line, kAmbiguousCommas));
+      throw InputError(fmt::format("{}: line {}: {}", name, line, kAmbiguousCommas));
     }
     for (const std::string_view word : numbers.words()) {
       const auto value = numbers.parse(word);
       if (!value) {
-        throw InputError(fmt::format("{}: line {}: '{}' is no number", path.string(), line, word));
+        throw InputError(fmt::format("{}: line {}: '{}' is no number", name, line, word));
       }
       if (!std::isfinite(*value)) {
-        throw InputError(fmt::format("{}: line {}: '{}' is not finite", path.string(), line, word));
+        throw InputError(fmt::format("{}: line {}: '{}' is not finite", name, line, word));
       }
       result.numbers.push_back(*value);
       result.lines.push_back(line);
     }
   }
   return result;
+}
+
+NumberFile readNumbers(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  const std::string foreign = describeForeign(file.text());
+  if (!foreign.empty()) throw InputError(fmt::format("{}: {}", path.string(), foreign));
+  if (file.text().size() > kMaxBytes) {
+    throw InputError(fmt::format("{}: too long for a file of a few numbers", path.string()));
+  }
+  return numbersIn(withoutMark(file.text()), path.string());
 }
 
 std::string exactText(double value) { return fmt::format("{:.17g}", value); }
