@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "agricolmap/core/stopwatch.hpp"
-#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/crs/crs.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
 #include "common.hpp"
 
@@ -34,9 +34,10 @@ void printCrs(const io::FileCrs& file) {
 
 ExitCode runInfo(const std::string& path) {
   const Stopwatch watch;
-  const Cloud cloud = io::readCloud(path);
+  const io::MapFiles files = io::mapFilesOf(path);
+  const Cloud cloud = io::readMap(files);
   const double seconds = watch.seconds();
-  const io::FileCrs crs = io::crsOf(path);
+  const io::FileCrs crs = io::crsOfMap(files);
   printWarnings(cloud.warnings);
   printWarnings(crs.warnings);
   const Box3 box = boundingBox(cloud);
@@ -60,7 +61,11 @@ ExitCode runInfo(const std::string& path) {
     fmt::print("density    {:.0f} points per m2 of the bounding box\n",
                static_cast<double>(cloud.size()) / area);
   }
-  fmt::print("offset.xyz {}\n", io::readOffsetBeside(path) ? "found beside the cloud" : "none");
+  fmt::print("offset.xyz {}\n",
+             io::readOffsetBeside(files.main) ? "found beside the cloud" : "none");
+  for (const std::string& file : io::offsetsPassedBy(files.main)) {
+    fmt::print("passed by  {}\n", file);
+  }
   fmt::print("read in    {:.3f} s\n", seconds);
   return ExitCode::kOk;
 }
@@ -70,7 +75,7 @@ ExitCode runInfo(const std::string& path) {
 CommandSlot addInfoCommand(CLI::App& app, const Globals&) {
   auto path = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("info", "Say what is in a cloud");
-  command->add_option("CLOUD", *path, "LAS, LAZ, PLY or PCD")->required();
+  command->add_option("CLOUD", *path, "LAS, LAZ, PLY, PCD, text, or ORTHO.tif,DSM.tif")->required();
   return {command, [path] { return runInfo(*path); }};
 }
 

@@ -26,6 +26,8 @@ RasterHeights readHeights(const std::filesystem::path& path, const RasterPart& /
   refuse(path.string());
 }
 
+void checkGeoreference(const std::string& name, const RasterPlace& /*place*/) { refuse(name); }
+
 void checkMetres(const std::string& name, const RasterPlace& /*place*/) { refuse(name); }
 
 std::optional<std::string> checkSameCrs(const std::string& name, const RasterPlace& /*place*/,
