@@ -233,6 +233,8 @@ void readWide(const Bands& bands, const Section& section, const NoData& nodata,
 
 }  // namespace
 
+void silenceGdal() { CPLSetErrorHandler(CPLQuietErrorHandler); }
+
 RasterShape readRasterShape(const std::filesystem::path& path) {
   const QuietGdal quiet;
   const GDALDatasetUniquePtr dataset = openRaster(path);

@@ -82,6 +82,10 @@ struct RasterShape {
   RasterPlace place;
 };
 
+/// Keeps GDAL from printing in all threads of the process, those that it starts itself included.
+/// For programs: a library leaves the process alone.
+void silenceGdal();
+
 /// Throws InputError when the file is no raster.
 RasterShape readRasterShape(const std::filesystem::path& path);
 

@@ -33,14 +33,19 @@ struct Sheet {
   std::string crs = {};                 ///< instead of `epsg`, as EPSG:32618+6360
   std::string unit = {};                ///< of all bands
   std::vector<std::string> names = {};  ///< of the bands
+  const char* compress = "NONE";        ///< of GeoTIFF
   bool undeclared = false;              ///< nothing is said of what the bands are
 };
 
 inline std::filesystem::path writeSheet(const std::filesystem::path& path, const Sheet& sheet) {
   GDALAllRegister();
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(sheet.driver.c_str());
-  const GDALDatasetUniquePtr dataset(
-      driver->Create(path.c_str(), sheet.cols, sheet.rows, sheet.bands, sheet.type, nullptr));
+  const std::string compress = std::string("COMPRESS=") + sheet.compress;
+  const char* const options[] = {compress.c_str(), nullptr};
+  const bool tiff = sheet.driver == "GTiff";
+  const GDALDatasetUniquePtr dataset(driver->Create(path.c_str(), sheet.cols, sheet.rows,
+                                                    sheet.bands, sheet.type,
+                                                    tiff ? const_cast<char**>(options) : nullptr));
   if (!dataset) throw OutputError("GDAL cannot write " + path.string());
   if (sheet.georeferenced) {
     std::array<double, 6> place = sheet.place;

@@ -15,6 +15,8 @@ namespace {
 
 }  // namespace
 
+void silenceGdal() {}
+
 RasterShape readRasterShape(const std::filesystem::path& path) { refuse(path.string()); }
 
 RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& /*options*/,
