@@ -6,6 +6,7 @@
 
 #include "agricolmap/io/cloud/xyz_columns.hpp"
 #include "agricolmap/io/las/las_header.hpp"
+#include "agricolmap/io/text/foreign_file.hpp"
 #include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
@@ -75,7 +76,8 @@ std::optional<CloudFormat> formatByContent(std::string_view bytes) {
   if (looksLikePly(text)) return CloudFormat::kPly;
   if (looksLikePcd(text)) return CloudFormat::kPcd;
   if (looksLikeLas(bytes)) return isCompressedLas(bytes) ? CloudFormat::kLaz : CloudFormat::kLas;
-  if (looksLikeXyz(text)) return CloudFormat::kXyz;
+  // Others have lines of numbers, too.
+  if (looksLikeXyz(text) && describeForeign(text).empty()) return CloudFormat::kXyz;
   return std::nullopt;
 }
 

@@ -27,6 +27,7 @@ const std::vector<Foreign>& foreignFiles() {
       {std::string("\x1f\x8b\x08\0\0", 5), "gzip", "gunzip -k"},
       {"PK\x03\x04 doc.kml", "zip", "unpack"},
       {"# Blender\nmtllib a.mtl\nv 1 2 3 0.1 0.2 0.3\n", "OBJ", "PLY"},
+      {"# vtk DataFile Version 3.0\nfield\nASCII\nPOINTS 2 float\n0 0 0\n1 2 3\n", "VTK", "PLY"},
       {"solid field\nfacet normal 0 0 1\n", "STL", "no colours"},
       {"#ROSBAG V2.0\n", "ROS bag", "PCD"},
       {"\x89MCAP0\r\n", "MCAP", "PCD"},
