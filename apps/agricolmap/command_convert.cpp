@@ -9,7 +9,7 @@
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
-#include "agricolmap/io/raster/raster_import.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
@@ -57,25 +57,28 @@ Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudForm
   return {copied.points, copied.left_out};
 }
 
-Written convertCloud(const ConvertArguments& arguments, const io::OutputPath& to,
-                     io::CloudFormat format) {
-  const std::string& from = arguments.files.front();
-  const io::FileCrs crs = io::crsOf(from, arguments.crs);
+Written convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
+                   const io::OutputPath& to, io::CloudFormat format) {
+  const io::FileCrs crs = io::crsOfMap(from, arguments.crs);
   std::optional<io::CommonFrame> frame;
   if (!arguments.to_crs.empty()) frame = io::frameIn(crs, arguments.to_crs);
   printWarnings(frame ? frame->warnings : crs.warnings);
-  const auto source = io::formatByContent(io::MappedFile(from).text());
+  const auto source = io::formatByContent(io::MappedFile(from.main).text());
   const bool said_anew = !arguments.crs.empty() && !frame;
   if (source && isLas(*source) && isLas(format) && !said_anew) {
-    return copyLas(from, to, format, frame ? &*frame : nullptr);
+    return copyLas(from.main, to, format, frame ? &*frame : nullptr);
   }
   if (!frame && crs.crs && !io::isProjected(*crs.crs)) {
     throw InputError(fmt::format(
         "{}: its coordinates are degrees ({}), which are kept from LAS to LAS alone; bring them "
         "into a projected system (--to-crs EPSG:326<zone>: UTM north; 327<zone> south)",
-        from, crs.crs->name));
+        from.main.string(), crs.crs->name));
   }
-  Cloud cloud = io::readCloud(from, {true, frame ? frame->moving.get() : nullptr});
+  io::ImportOptions options;
+  arguments.flags.apply(optionTable(options));
+  Cloud cloud = from.raster && !frame && arguments.crs.empty()
+                    ? io::importOrthoDsm(from.main, from.model, options)
+                    : io::readMap(from, {true, frame ? frame->moving.get() : nullptr}, options);
   printWarnings(cloud.warnings);
   if (frame) cloud.crs = frame->crs;
   if (!frame && crs.crs) cloud.crs = *crs.crs;
@@ -89,39 +92,27 @@ Written convertCloud(const ConvertArguments& arguments, const io::OutputPath& to
   return {cloud.size(), cloud.dropped_points};
 }
 
-Written convertRasters(const ConvertArguments& arguments, const io::OutputPath& to,
-                       io::CloudFormat format) {
-  io::ImportOptions options;
-  arguments.flags.apply(optionTable(options));
-  const Cloud cloud = io::importOrthoDsm(arguments.files[0], arguments.files[1], options);
-  printWarnings(cloud.warnings);
-  io::writeCloud(to, cloud, format);
-  return {cloud.size(), cloud.dropped_points};
-}
-
 ExitCode runConvert(ConvertArguments arguments, const Globals& globals) {
   if (arguments.output.empty()) {
     arguments.output = arguments.files.back();
     arguments.files.pop_back();
   }
-  const bool rasters = arguments.files.size() == 2;
-  if (!rasters && !arguments.flags.given().empty()) {
+  const io::MapFiles from = arguments.files.size() == 2
+                                ? io::MapFiles{arguments.files[0], arguments.files[1], true}
+                                : io::mapFilesOf(arguments.files.front());
+  if (!from.raster && !arguments.flags.given().empty()) {
     throw UsageError(fmt::format("{} would do nothing: it needs ORTHO.tif and DSM.tif",
                                  flagOf(arguments.flags.given().front())));
-  }
-  if (rasters && !(arguments.crs.empty() && arguments.to_crs.empty())) {
-    throw UsageError("--crs and --to-crs are for clouds; rasters say their coordinate system");
   }
   const io::CloudFormat format = formatToWrite(arguments.output);
   io::StagedFile output(arguments.output, globals.overwrite);
   Progress progress(globals);
-  progress.step(rasters ? "import" : "convert");
-  const Written written = rasters ? convertRasters(arguments, output.path(), format)
-                                  : convertCloud(arguments, output.path(), format);
+  progress.step(from.raster ? "import" : "convert");
+  const Written written = convertMap(arguments, from, output.path(), format);
   output.commit();
   if (!globals.quiet) {
     fmt::print("{}: {} points, {} {}\n", arguments.output, written.points, written.left_out,
-               rasters ? "pixels without a height left out" : "left out");
+               from.raster ? "pixels without a height left out" : "left out");
   }
   return ExitCode::kOk;
 }
@@ -133,8 +124,10 @@ CommandSlot addConvertCommand(CLI::App& app, const Globals& globals) {
   CLI::App* command = app.add_subcommand(
       "convert", "Write a cloud, or an orthomosaic with its surface model, in another format");
   command
-      ->add_option("FILES", arguments->files,
-                   "IN OUT, or ORTHO.tif DSM.tif OUT; OUT ends in .ply, .pcd, .las or .laz")
+      ->add_option(
+          "FILES", arguments->files,
+          "IN OUT, or ORTHO.tif DSM.tif OUT; IN may be text and ORTHO.tif, too; OUT ends in .ply, "
+          ".pcd, .las or .laz")
       ->required()
       ->expected(2, 3);
   command->add_option("--crs", arguments->crs,

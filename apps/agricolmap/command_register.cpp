@@ -9,6 +9,7 @@
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/path_file.hpp"
 #include "agricolmap/pipeline/followed.hpp"
@@ -131,8 +132,9 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   Monitor monitor(globals.stop, [&](Stage stage) { progress.step(nameOf(stage)); });
   report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
   info.seed = static_cast<std::uint64_t>(options.seed);
-  info.prior = initialGuess(arguments.files.fixed, arguments.files.moving, arguments.prior,
-                            info.prior_source);
+  info.prior =
+      initialGuess(io::mapFilesOf(arguments.files.fixed).main,
+                   io::mapFilesOf(arguments.files.moving).main, arguments.prior, info.prior_source);
   const LoadedPair pair = monitor.run(Stage::kRead, [&] { return loadPair(arguments.files); });
   for (const std::string& warning : pair.frame.warnings) monitor.warn(warning);
   printWarnings(pair.fixed.warnings);

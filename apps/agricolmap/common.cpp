@@ -69,6 +69,12 @@ Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
   }
   const auto world_from_fixed = io::readOffsetBeside(fixed);
   const auto world_from_moving = io::readOffsetBeside(moving);
+  for (const std::filesystem::path& cloud : {fixed, moving}) {
+    for (const std::string& file : io::offsetsPassedBy(cloud)) {
+      spdlog::warn("{} is passed by: were it the offset of {}, it would be called {}.offset.xyz",
+                   file, cloud.string(), cloud.stem().string());
+    }
+  }
   if (!world_from_fixed && !world_from_moving) {
     source = "coordinates as they stand";
     return Eigen::Affine3d::Identity();

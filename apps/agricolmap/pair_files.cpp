@@ -7,9 +7,9 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 
 namespace agricolmap {
@@ -22,8 +22,9 @@ bool isLas(io::CloudFormat format) {
   return format == io::CloudFormat::kLas || format == io::CloudFormat::kLaz;
 }
 
-io::CloudFormat formatOf(const std::string& path) {
-  return io::formatByContent(io::MappedFile(path).text()).value_or(io::CloudFormat::kPly);
+io::CloudFormat formatOf(const std::string& map) {
+  return io::formatByContent(io::MappedFile(io::mapFilesOf(map).main).text())
+      .value_or(io::CloudFormat::kPly);
 }
 
 std::string nameOfAligned(io::CloudFormat format) { return "aligned." + io::endingOf(format); }
@@ -31,8 +32,9 @@ std::string nameOfAligned(io::CloudFormat format) { return "aligned." + io::endi
 }  // namespace
 
 void PairFiles::addTo(CLI::App& command) {
-  command.add_option("FIXED", fixed, "The wide map: LAS, LAZ, PLY or PCD");
-  command.add_option("MOVING", moving, "The map to be moved: LAS, LAZ, PLY or PCD");
+  command.add_option("FIXED", fixed,
+                     "The wide map: LAS, LAZ, PLY, PCD, lines of text, or ORTHO.tif,DSM.tif");
+  command.add_option("MOVING", moving, "The map to be moved: the same");
   command.add_option("--fixed-crs", fixed_crs,
                      "Coordinate system of FIXED: EPSG:32632, WKT or a file with it. Default: what "
                      "the file or a .prj beside it says, else that of MOVING");
@@ -55,8 +57,10 @@ void PairFiles::check() const {
 
 LoadedPair loadPair(const PairFiles& files) {
   LoadedPair pair;
-  const io::FileCrs fixed = io::crsOf(files.fixed, files.fixed_crs);
-  const io::FileCrs moving = io::crsOf(files.moving, files.moving_crs);
+  const io::MapFiles fixed_files = io::mapFilesOf(files.fixed);
+  const io::MapFiles moving_files = io::mapFilesOf(files.moving);
+  const io::FileCrs fixed = io::crsOfMap(fixed_files, files.fixed_crs);
+  const io::FileCrs moving = io::crsOfMap(moving_files, files.moving_crs);
   pair.frame = io::commonFrame(fixed, moving);
   const io::CloudFormat own = formatOf(files.moving);
   pair.aligned = isLas(own) ? own : io::CloudFormat::kPly;
@@ -67,7 +71,7 @@ LoadedPair loadPair(const PairFiles& files) {
   parallelFor(2, [&](std::size_t i) {
     Cloud& cloud = i == 0 ? pair.fixed : pair.moving;
     const io::CoordinateMap* const map = (i == 0 ? pair.frame.fixed : pair.frame.moving).get();
-    cloud = io::readCloud(i == 0 ? files.fixed : files.moving, {true, map});
+    cloud = io::readMap(i == 0 ? fixed_files : moving_files, {true, map});
     cloud.crs = pair.frame.crs;
   });
   io::checkGroundScale(pair.fixed.name, pair.frame.crs, pair.fixed.origin.head<2>());

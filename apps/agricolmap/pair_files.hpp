@@ -15,6 +15,7 @@
 
 namespace agricolmap {
 
+/// Each the file of a cloud, an orthomosaic, or ORTHO.tif,DSM.tif.
 struct PairFiles {
   std::string fixed;
   std::string moving;

@@ -8,11 +8,18 @@
 
 namespace agricolmap::io {
 
-enum class CloudFormat { kPly, kPcd, kLas, kLaz };
+enum class CloudFormat {
+  kPly,
+  kPcd,
+  kLas,
+  kLaz,
+  kXyz,  ///< lines of text; read, never written
+};
 
 /// "ply"
 std::string endingOf(CloudFormat format);
-/// By the ending of a file's name, capitals or not; nothing where it is another.
+/// Of those that are written, by the ending of a file's name, capitals or not; nothing where it is
+/// another.
 std::optional<CloudFormat> formatByEnding(const std::filesystem::path& path);
 /// By the bytes of a file; nothing where it is no cloud.
 std::optional<CloudFormat> formatByContent(std::string_view bytes);
