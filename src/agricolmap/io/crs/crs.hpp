@@ -31,6 +31,9 @@ FileCrs crsOf(const std::filesystem::path& cloud, const std::string& given = "")
 /// What brings two clouds into one coordinate system in metres.
 struct CommonFrame {
   Crs crs;  ///< empty where nobody said; units are metres
+  /// What the coordinates of the files themselves were taken to be in.
+  std::optional<Crs> fixed_file;
+  std::optional<Crs> moving_file;
   /// For ReadOptions; none where coordinates stay as they are.
   std::unique_ptr<CoordinateMap> fixed;
   std::unique_ptr<CoordinateMap> moving;
