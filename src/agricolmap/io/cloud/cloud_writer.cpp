@@ -108,9 +108,10 @@ void writeCloud(const OutputPath& path, const Cloud& cloud, CloudFormat format,
       return writePcd(path, cloud, target_from_file);
     case CloudFormat::kLas:
     case CloudFormat::kLaz:
+    case CloudFormat::kCopc:
       break;
   }
-  writeLas(path, cloud, format == CloudFormat::kLaz, target_from_file);
+  writeLas(path, cloud, format, target_from_file);
 }
 
 }  // namespace agricolmap::io
