@@ -187,7 +187,8 @@ TEST_F(ApplyTest, WhatCannotBeAppliedIsRefused) {
   for (PlyPoint& point : far) point.xyz[1] *= 3.2808;
   const std::string feet = write("feet.ply", plyBytes(far));
   fails({feet, "-o", inFolder("none")}, 3, {"feet.ply", "units"});
-  fails({cloud, "-o", inFolder("none"), "--crs", "EPSG:4326"}, 3, {"WGS 84", "does not say its coordinate system"});
+  fails({cloud, "-o", inFolder("none"), "--crs", "EPSG:4326"}, 3,
+        {"WGS 84", "does not say its coordinate system"});
 }
 
 }  // namespace

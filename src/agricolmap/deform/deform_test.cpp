@@ -9,7 +9,6 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/deform/file_deformation.hpp"
-#include "agricolmap/deform/file_deformation.hpp"
 #include "agricolmap/map/test_scene.hpp"
 
 namespace agricolmap::deform {
