@@ -63,7 +63,7 @@ bool isLayout(const LasRecord& record) {
 bool LasOutline::store(const Eigen::Vector3d& point, std::byte* record) const {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const double steps = std::rint((point[axis] - offset[axis]) / scale[axis]);
+    const double steps = std::round((point[axis] - offset[axis]) / scale[axis]);
     if (!(std::abs(steps) <= kMost)) return false;
     storeLe(record + 4 * axis, static_cast<std::int32_t>(steps));
   }
