@@ -60,8 +60,9 @@ void noteTally(const MoveTally& tally, const std::string& file, CopiedCloud& cop
   if (tally.far > copied.points / 2) refuseFar(file, tally.far, copied.points);
   if (tally.nowhere == 0) return;
   copied.warnings.push_back(
-      fmt::format("{}: {} points have no place: they are NaN or infinite, and are kept so", file,
-                  tally.nowhere));
+      fmt::format("{}: {} points have no place in the coordinate system of the fixed cloud; they "
+                  "become NaN",
+                  file, tally.nowhere));
 }
 
 void noteDouble(const PointMover& mover, const std::string& file, CopiedCloud& copied) {

@@ -97,9 +97,12 @@ MoveTally PointMover::move(CoordinateBlock& block) const {
   moveAll(move_.target_from_file, x.data(), y.data(), z.data(), block.count);
   for (std::size_t i = 0; i < block.count; ++i) {
     const bool somewhere = std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
-    if (finite[i] && somewhere) continue;
-    ++tally.nowhere;
-    block.set(i, finite[i] ? Eigen::Vector3d::Constant(kNone) : before[i]);
+    if (!finite[i]) {
+      block.set(i, before[i]);
+    } else if (!somewhere) {
+      ++tally.nowhere;
+      block.set(i, Eigen::Vector3d::Constant(kNone));
+    }
   }
   return tally;
 }

@@ -27,7 +27,7 @@ struct CoordinateBlock {
 
 /// What became of points.
 struct MoveTally {
-  std::uint64_t nowhere = 0;  ///< not finite, before or after
+  std::uint64_t nowhere = 0;  ///< finite before, but not after
   std::uint64_t far = 0;      ///< from where the move belongs
   MoveTally& operator+=(const MoveTally& other) {
     nowhere += other.nowhere;
