@@ -6,6 +6,7 @@
 
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/cloud/move_file.hpp"
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
@@ -27,12 +28,8 @@ struct ConvertArguments {
 
 io::CloudFormat formatToWrite(const std::string& path) {
   if (const auto format = io::formatByEnding(path)) return *format;
-  throw UsageError(
-      fmt::format("{}: its ending tells no format; known are .ply, .pcd, .las and .laz", path));
-}
-
-bool isLas(io::CloudFormat format) {
-  return format == io::CloudFormat::kLas || format == io::CloudFormat::kLaz;
+  throw UsageError(fmt::format(
+      "{}: its ending tells no format; known are .ply, .pcd, .las, .laz and .copc.laz", path));
 }
 
 struct Written {
@@ -42,8 +39,8 @@ struct Written {
 
 /// From LAS to LAS point by point, with all that they have.
 Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudFormat format,
-                const io::CommonFrame* frame) {
-  std::optional<io::LasMove> move;
+                const io::CommonFrame* frame, const Crs& crs, Progress& progress) {
+  std::optional<io::CloudMove> move;
   if (frame != nullptr) {
     // Read for its origin alone: what is far from the others is left out as it is there.
     const Cloud cloud = io::readCloud(from, {false, frame->moving.get()});
@@ -52,21 +49,26 @@ Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudForm
     move->origin = cloud.origin;
     move->crs = frame->crs;
   }
-  const io::LasCopied copied = io::copyLas(from, to, format == io::CloudFormat::kLaz, move);
+  const std::uint64_t points = io::pointsOf(from);
+  const io::CopiedCloud copied = io::copyLas(from, to, format, move, crs, [&](std::uint64_t done) {
+    progress.share("convert", done, points);
+  });
   printWarnings(copied.warnings);
   return {copied.points, copied.left_out};
 }
 
 Written convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
-                   const io::OutputPath& to, io::CloudFormat format) {
+                   const io::OutputPath& to, io::CloudFormat format, Progress& progress) {
   const io::FileCrs crs = io::crsOfMap(from, arguments.crs);
   std::optional<io::CommonFrame> frame;
   if (!arguments.to_crs.empty()) frame = io::frameIn(crs, arguments.to_crs);
   printWarnings(frame ? frame->warnings : crs.warnings);
   const auto source = io::formatByContent(io::MappedFile(from.main).text());
-  const bool said_anew = !arguments.crs.empty() && !frame;
-  if (source && isLas(*source) && isLas(format) && !said_anew) {
-    return copyLas(from.main, to, format, frame ? &*frame : nullptr);
+  if (source && io::isLas(*source) && io::isLas(format)) {
+    // COPC has no place for GeoTIFF keys: what they say is written as WKT.
+    const bool anew = !arguments.crs.empty() || format == io::CloudFormat::kCopc;
+    return copyLas(from.main, to, format, frame ? &*frame : nullptr,
+                   anew && crs.crs ? *crs.crs : Crs(), progress);
   }
   if (!frame && crs.crs && !io::isProjected(*crs.crs)) {
     throw InputError(fmt::format(
@@ -82,7 +84,7 @@ Written convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
   printWarnings(cloud.warnings);
   if (frame) cloud.crs = frame->crs;
   if (!frame && crs.crs) cloud.crs = *crs.crs;
-  if (!isLas(format) && !cloud.crs.wkt.empty()) {
+  if (!io::isLas(format) && !cloud.crs.wkt.empty()) {
     printWarnings(
         {fmt::format("{}: {} has no place for the coordinate system, {}; say it where "
                      "the file is used",
@@ -108,7 +110,7 @@ ExitCode runConvert(ConvertArguments arguments, const Globals& globals) {
   io::StagedFile output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step(from.raster ? "import" : "convert");
-  const Written written = convertMap(arguments, from, output.path(), format);
+  const Written written = convertMap(arguments, from, output.path(), format, progress);
   output.commit();
   if (!globals.quiet) {
     fmt::print("{}: {} points, {} {}\n", arguments.output, written.points, written.left_out,
@@ -127,7 +129,7 @@ CommandSlot addConvertCommand(CLI::App& app, const Globals& globals) {
       ->add_option(
           "FILES", arguments->files,
           "IN OUT, or ORTHO.tif DSM.tif OUT; IN may be text and ORTHO.tif, too; OUT ends in .ply, "
-          ".pcd, .las or .laz")
+          ".pcd, .las, .laz or .copc.laz")
       ->required()
       ->expected(2, 3);
   command->add_option("--crs", arguments->crs,
@@ -149,7 +151,7 @@ CommandSlot addImportCommand(CLI::App& app, const Globals& globals) {
       ->required();
   command->add_option("DSM", arguments->files[1], "Surface model: GeoTIFF, same coordinate system")
       ->required();
-  command->add_option("-o,--output", arguments->output, "PLY, PCD, LAS or LAZ to write")
+  command->add_option("-o,--output", arguments->output, "PLY, PCD, LAS, LAZ or COPC to write")
       ->required();
   io::ImportOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the import");

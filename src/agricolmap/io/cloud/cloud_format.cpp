@@ -13,9 +13,9 @@ namespace agricolmap::io {
 namespace {
 
 constexpr std::size_t kFirstLines = 1U << 16;
-/// Those that are written.
+/// Those that are written; what ends like another's ending before that.
 constexpr std::array kFormats{CloudFormat::kPly, CloudFormat::kPcd, CloudFormat::kLas,
-                              CloudFormat::kLaz};
+                              CloudFormat::kCopc, CloudFormat::kLaz};
 
 bool looksLikePly(std::string_view text) {
   std::string_view line = takeLine(text, lineEndOf(text));
@@ -53,6 +53,8 @@ std::string endingOf(CloudFormat format) {
       return "laz";
     case CloudFormat::kXyz:
       return "xyz";
+    case CloudFormat::kCopc:
+      return "copc.laz";
     case CloudFormat::kPly:
       break;
   }
@@ -60,13 +62,15 @@ std::string endingOf(CloudFormat format) {
 }
 
 std::optional<CloudFormat> formatByEnding(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  if (ending.empty()) return std::nullopt;
-  ending.erase(0, 1);  // the dot
-  std::transform(ending.begin(), ending.end(), ending.begin(),
+  std::string name = path.filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const CloudFormat format : kFormats) {
-    if (ending == endingOf(format)) return format;
+    const std::string ending = endingOf(format);
+    if (name.size() > ending.size() && name.ends_with(ending) &&
+        name[name.size() - ending.size() - 1] == '.') {
+      return format;
+    }
   }
   return std::nullopt;
 }

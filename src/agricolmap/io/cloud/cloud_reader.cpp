@@ -36,6 +36,7 @@ Cloud readCloud(const std::filesystem::path& path, const ReadOptions& options) {
         return readPcd(file, name, options);
       case CloudFormat::kLas:
       case CloudFormat::kLaz:
+      case CloudFormat::kCopc:
         return readLas(file, name, options);
       case CloudFormat::kXyz:
         return readXyz(file, name, options);

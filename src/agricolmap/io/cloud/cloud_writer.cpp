@@ -111,9 +111,10 @@ void writeCloud(const OutputPath& path, const Cloud& cloud, CloudFormat format,
       throw UsageError(fmt::format("{}: lines of text are read, never written", path.shown()));
     case CloudFormat::kLas:
     case CloudFormat::kLaz:
+    case CloudFormat::kCopc:
       break;
   }
-  writeLas(path, cloud, format == CloudFormat::kLaz, target_from_file);
+  writeLas(path, cloud, format, target_from_file);
 }
 
 }  // namespace agricolmap::io

@@ -1,15 +1,15 @@
 #include "agricolmap/io/cloud/pcd_reader.hpp"
 
 #include <fmt/format.h>
-#include <lzf.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/ascii_source.hpp"
+#include "agricolmap/io/cloud/pcd_data.hpp"
 #include "agricolmap/io/cloud/pcd_header.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
 #include "agricolmap/io/text/text.hpp"
@@ -17,8 +17,6 @@
 namespace agricolmap::io {
 namespace {
 
-/// LZF repeats at most 264 bytes from 3.
-constexpr std::uint64_t kMaxExpansion = 88;
 constexpr double kPoseTolerance = 1e-9;
 
 /// Which fields hold what.
@@ -102,49 +100,6 @@ BinaryColumns columnsOf(const PcdHeader& header, const Roles& roles, const std::
   return columns;
 }
 
-std::uint64_t checkedBytes(const PcdHeader& header, std::uint64_t available,
-                           const std::string& name) {
-  const std::size_t each = std::max<std::size_t>(header.pointBytes(), 1);  // x, y, z at least
-  if (header.points > available / each) {
-    throw InputError(fmt::format(
-        "{}: truncated: the header announces {} points of {} bytes, but only {} bytes follow ({} "
-        "points)",
-        name, header.points, each, available, available / each));
-  }
-  return header.points * each;
-}
-
-/// `rest` gets the number of bytes that follow.
-std::vector<std::byte> decompress(const PcdHeader& header, std::span<const std::byte> data,
-                                  const std::string& name, std::size_t& rest) {
-  std::array<std::uint32_t, 2> sizes{};
-  if (data.size() < sizeof(sizes)) {
-    throw InputError(fmt::format("{}: truncated: no compressed data follow the header", name));
-  }
-  std::memcpy(sizes.data(), data.data(), sizeof(sizes));
-  data = data.subspan(sizeof(sizes));
-  const auto [compressed, plain] = sizes;
-  if (compressed > data.size()) {
-    throw InputError(fmt::format("{}: truncated: {} bytes of compressed data announced, {} follow",
-                                 name, compressed, data.size()));
-  }
-  // Checked before anything is allocated on the file's word.
-  if (plain > kMaxExpansion * compressed) {
-    throw InputError(
-        fmt::format("{}: damaged: {} bytes cannot expand to {}", name, compressed, plain));
-  }
-  if (checkedBytes(header, plain, name) != plain) {
-    throw InputError(fmt::format("{}: {} bytes of data for {} points of {} bytes", name, plain,
-                                 header.points, header.pointBytes()));
-  }
-  rest = data.size() - compressed;
-  std::vector<std::byte> out(plain);
-  if (lzf_decompress(data.data(), compressed, out.data(), plain) != plain) {
-    throw InputError(fmt::format("{}: the compressed data are damaged", name));
-  }
-  return out;
-}
-
 Cloud readAscii(const PcdHeader& header, const Roles& roles, std::string_view text,
                 const std::string& name, const CoordinateMap* map) {
   using Use = AsciiColumn::Use;
@@ -183,7 +138,7 @@ Cloud readPoints(const PcdHeader& header, const Roles& roles, std::string_view b
     case PcdEncoding::kAscii:
       return readAscii(header, roles, body, name, map);
     case PcdEncoding::kBinary: {
-      const std::uint64_t used = checkedBytes(header, data.size(), name);
+      const std::uint64_t used = pcdBytes(header, data.size(), name);
       Cloud cloud =
           assembleCloud(BinarySource(columnsOf(header, roles, data.data(), true)), name, map);
       warnOfRest(data.size() - used, "bytes", cloud);
@@ -193,7 +148,7 @@ Cloud readPoints(const PcdHeader& header, const Roles& roles, std::string_view b
       break;
   }
   std::size_t rest = 0;
-  const std::vector<std::byte> plain = decompress(header, data, name, rest);
+  const std::vector<std::byte> plain = decompressPcd(header, data, name, rest);
   Cloud cloud =
       assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name, map);
   warnOfRest(rest, "bytes", cloud);
