@@ -1,16 +1,8 @@
 // agricolmap_time_files: wall time and memory of `agricolmap register` from files to files, and of
 // reading and gridding alone beside it.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -18,7 +10,6 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/core/stopwatch.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
@@ -26,6 +17,7 @@
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/pipeline/options.hpp"
 #include "agricolmap/simulate/simulate.hpp"
+#include "process_cost.hpp"
 #include "support/exit_code.hpp"
 
 namespace agricolmap {
@@ -46,64 +38,6 @@ struct Arguments {
   bool baseline = false;  ///< be the program that reads and grids
   std::string make_pair;  ///< be the program that writes the pair into this folder
 };
-
-/// A folder that goes with the program.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string name = (fs::temp_directory_path() / "agricolmap_time_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw OutputError(fmt::format("{}: cannot be made; set TMPDIR", name));
-    }
-    path_ = name;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-struct ProcessCost {
-  double wall_s = 0.0;
-  double cpu_s = 0.0;
-  double peak_mib = 0.0;
-};
-
-double secondsOf(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-/// Runs a program to its end. `accepted_codes`: exit codes that are an answer.
-ProcessCost runProgram(const std::vector<std::string>& command,
-                       const std::vector<int>& accepted_codes) {
-  std::vector<char*> argv;
-  for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  pid_t pid = 0;
-  const Stopwatch watch;
-  if (const int error = ::posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ)) {
-    throw UsageError(fmt::format("{}: cannot be run: {}", command[0], std::strerror(error)));
-  }
-  int status = 0;
-  rusage usage{};
-  while (::wait4(pid, &status, 0, &usage) < 0) {
-    if (errno != EINTR) throw Error(ErrorKind::kInternal, "wait4 failed");
-  }
-  const ProcessCost cost = {watch.seconds(), secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime),
-                            static_cast<double>(usage.ru_maxrss) / 1024.0};
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (std::find(accepted_codes.begin(), accepted_codes.end(), code) == accepted_codes.end()) {
-    throw Error(ErrorKind::kInternal,
-                fmt::format("'{}' ended with code {}", fmt::join(command, " "), code));
-  }
-  return cost;
-}
 
 /// Writes a pair of about 2 and 1 million points with the largest guess errors.
 void writePair(int seed, const fs::path& folder) {
@@ -146,13 +80,6 @@ void readAndGrid(const Arguments& arguments) {
     const map::GridMap map = map::makeGridMap(cloud, level.levelled_from_guess, box, options.grid);
     if (map.filled == 0) throw InputError(cloud.name + ": no cell is filled");
   }
-}
-
-std::string costLines(const std::string& program, int threads, int repeat,
-                      const ProcessCost& cost) {
-  const std::string head = fmt::format("{},{},{}", program, threads, repeat);
-  return fmt::format("{0},wall_s,{1:.4f}\n{0},cpu_s,{2:.4f}\n{0},peak_mib,{3:.1f}\n", head,
-                     cost.wall_s, cost.cpu_s, cost.peak_mib);
 }
 
 std::string timeRegister(const Arguments& arguments, const fs::path& folder, int threads,

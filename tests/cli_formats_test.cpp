@@ -1,7 +1,10 @@
 // Clouds of other formats and coordinate systems than PLY in metres, as a user meets them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "support/cli_fixture.hpp"
@@ -171,6 +174,43 @@ TEST_F(FormatsTest, ConvertKeepsCoordinatesAndColours) {
   expectFailure({"convert", ply, inFolder("a.e57")}, 2, {"a.e57", ".laz"});
   expectFailure({"convert", inFolder("none.las"), inFolder("b.xyz.ply")}, 3, {"none.las"});
   expectFailure({"convert", ply, inFolder("d.ply"), "--step", "2"}, 2, {"--step", "nothing"});
+}
+
+TEST_F(FormatsTest, AFewPointsFarOffAreNotTheSizeOfTheField) {
+  std::vector<PlyPoint> points = bumpySquare(3.0);
+  points.push_back({{2000.0, 1000.0, 3.0}, {1, 2, 3}});
+  const ProgramResult far = run({"info", write("far.ply", plyBytes(points))});
+  EXPECT_NE(far.out.find("extent     2000.00 x 1000.00"), std::string::npos) << far.out;
+  EXPECT_NE(far.out.find("most of it 2.95 x 2.95 x "), std::string::npos) << far.out;
+  EXPECT_NE(far.out.find("points per m2 of the area of most of it"), std::string::npos) << far.out;
+  points.pop_back();
+  const ProgramResult near_by = run({"info", write("near.ply", plyBytes(points))});
+  EXPECT_EQ(near_by.out.find("most of it"), std::string::npos) << near_by.out;
+}
+
+TEST_F(FormatsTest, LinesOfTextAreRegistered) {
+  const PairFiles files = pair("georeferenced");
+  std::string text = "//X;Y;Z;R;G;B\n";
+  for (const PlyPoint& point : pointsOfPly(contentOf(files.ugv()))) {
+    std::array<char, 160> line{};
+    std::snprintf(line.data(), line.size(), "%.4f;%.4f;%.4f;%d;%d;%d\n", point.xyz[0], point.xyz[1],
+                  point.xyz[2], point.rgb[0], point.rgb[1], point.rgb[2]);
+    text += line.data();
+  }
+  std::replace(text.begin(), text.end(), '.', ',');
+  registerPair(files.uav(), write("ugv.csv", text));
+  EXPECT_LT(rms(), 0.03);
+  expectFailure({"convert", files.ugv(), inFolder("ugv.xyz")}, 2, {"ugv.xyz", ".laz"});
+}
+
+TEST_F(FormatsTest, OffsetsThatArePassedByAreNamed) {
+  const std::string cloud = write("field/field.ply", plyBytes(bumpySquare(3.0)));
+  const std::string offset = write("field/field_offset.xyz", "500000 5400000 300\n");
+  const ProgramResult info = run({"info", cloud});
+  EXPECT_NE(info.out.find("passed by  " + offset), std::string::npos) << info.out;
+  const ProgramResult result = runAgricolmap(
+      {"register", cloud, cloud, "-o", inFolder("out"), "--no-pictures", "--overwrite"});
+  EXPECT_NE(result.err.find(offset + " is passed by"), std::string::npos) << result.err;
 }
 
 }  // namespace

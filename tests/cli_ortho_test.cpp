@@ -1,6 +1,8 @@
 // `agricolmap simulate --ortho`: pairs from real mosaics, here made up by the test.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "agricolmap/io/raster/raster_test_support.hpp"
@@ -72,7 +74,6 @@ class OrthoTest : public CliTest {
     return all;
   }
 
- private:
   static Sheet sheetOf(double width, double height, double pixel) {
     Sheet sheet;
     sheet.cols = static_cast<int>(std::lround(width / pixel));
@@ -163,6 +164,75 @@ TEST_F(OrthoTest, FlagsThatWouldDoNothingAreRefused) {
                 2, {"field.slope", "surface model"});
   expectFailure({"simulate", "--ortho", "o.tif", "--window", "1", "2", "3", "-o", out}, 2,
                 {"--window"});
+}
+
+TEST_F(OrthoTest, ASecondDateRegistersToAFirst) {
+  const std::string ortho = writeMosaic("first.tif", 14.0, 9.0);
+  const std::string dsm = writeModel("dsm.tif", 14.0, 9.0, true);
+  // The same plants, seen 3 cm east and 2 cm north of where they are.
+  Sheet strip = sheetOf(11.0, 3.0, 0.015);
+  strip.place = {kEast + 1.53, 0.015, 0.0, kNorth + 6.02, 0.0, -0.015};
+  strip.value = [](int band, int col, int row) {
+    const bool plant = plantAt(1.5 + 0.015 * (col + 0.5), 6.0 - 0.015 * (row + 0.5)) > 0.01;
+    const double colours[2][3] = {{125.0, 105.0, 90.0}, {65.0, 125.0, 50.0}};
+    return colours[plant ? 1 : 0][band] + 30.0 * hash(col + 7, row) - 15.0;
+  };
+  const std::string second = writeSheet(inFolder("second.tif"), strip);
+  for (const std::string& fixed : {ortho, ortho + "," + dsm}) {
+    const ProgramResult result =
+        runAgricolmap({"register", fixed, second, "-o", inFolder("out"), "--no-pictures",
+                       "--overwrite", "--prior-sigma", "0.5,2,2"});
+    ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+    EXPECT_NE(result.err.find("laid flat"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("coordinate system"), std::string::npos) << result.err;
+    const nlohmann::json report = jsonOf(inFolder("out/registration.json"));
+    EXPECT_EQ(report.at("fixed").at("crs").at("name"), "WGS 84 / UTM zone 32N");
+    const auto& matrix = report.at("transform").at("matrix");
+    const std::array<double, 3> middle{kEast + 7.0, kNorth + 4.5, 0.0};
+    for (std::size_t row = 0; row < 2; ++row) {
+      double there = matrix[row][3].get<double>() - middle[row];
+      for (std::size_t col = 0; col < 3; ++col) {
+        there += matrix[row][col].get<double>() * middle[col];
+      }
+      EXPECT_NEAR(there, row == 0 ? -0.03 : -0.02, 0.01);
+    }
+  }
+}
+
+TEST_F(OrthoTest, RastersAreToldAndConverted) {
+  const std::string ortho = writeMosaic("ortho.tif", 3.0, 2.0);
+  const std::string dsm = writeModel("dsm.tif", 3.0, 2.0, true);
+  const ProgramResult info = runAgricolmap({"info", ortho + "," + dsm});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_NE(info.out.find("UTM zone 32N"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("points     26600"), std::string::npos) << info.out;
+  for (const std::vector<std::string>& from : {std::vector{ortho + "," + dsm}, {ortho, dsm}}) {
+    std::vector<std::string> words{"convert", "--quiet", "--overwrite"};
+    words.insert(words.end(), from.begin(), from.end());
+    words.push_back(inFolder("map.las"));
+    EXPECT_EQ(runAgricolmap(words).exit_code, 0);
+    const ProgramResult las = runAgricolmap({"info", inFolder("map.las")});
+    EXPECT_NE(las.out.find("UTM zone 32N"), std::string::npos) << las.out;
+    EXPECT_NE(las.out.find("z          300."), std::string::npos) << las.out;
+  }
+  expectFailure({"info", ortho + ",none.tif"}, 3, {"none.tif", "surface model"});
+  expectFailure({"convert", ortho + "," + ortho, inFolder("x.las")}, 3, {ortho, "picture"});
+}
+
+// GDAL decodes in threads of its own, whose messages are not caught by those who called it.
+TEST_F(OrthoTest, NoLineOfALibraryReachesTheTerminal) {
+  Sheet sheet = sheetOf(9.0, 9.0, 0.015);
+  sheet.compress = "DEFLATE";
+  sheet.value = [](int band, int col, int row) { return 100.0 + 20.0 * hash(col + band, row); };
+  const std::string whole = contentOf(writeSheet(inFolder("whole.tif"), sheet));
+  std::string damaged = whole;
+  for (std::size_t i = whole.size() / 3; i < whole.size() / 3 + 3000; ++i) damaged[i] ^= 0x5A;
+  for (const std::string& content : {damaged, whole.substr(0, whole.size() / 2)}) {
+    const ProgramResult result = runAgricolmap({"info", write("bad.tif", content)});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(result.err.rfind("agricolmap: ", 0), 0U) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
 }
 
 }  // namespace

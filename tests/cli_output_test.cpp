@@ -53,6 +53,31 @@ TEST_F(OutputTest, ARejectionRemovesTheResultOfAnEarlierRun) {
   EXPECT_EQ(entries("out"), (std::set<std::string>{"registration.json"}));
 }
 
+TEST_F(OutputTest, WhatIsSaidToAFullDiskIsAnError) {
+  const std::string cloud = write("cloud.ply", plyBytes(bumpySquare(3.0)));
+  const std::vector<std::vector<std::string>> commands = {{"info", cloud},
+                                                          {"document-options"},
+                                                          {"register", "--dump-config"},
+                                                          {"--help"},
+                                                          {"--version"}};
+  for (const std::vector<std::string>& command : commands) {
+    const ProgramResult result = runInShell("", command, "> /dev/full");
+    EXPECT_EQ(result.exit_code, 4) << command[0] << result.err;
+    EXPECT_NE(result.err.find("standard output: cannot"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(OutputTest, AFileSizeLimitLeavesNothingBehind) {
+  const std::string cloud = write("cloud.ply", plyBytes(bumpySquare(12.0)));
+  const std::set<std::string> before = entries();
+  for (const std::string name : {"big.las", "big.ply"}) {
+    const ProgramResult result = runInShell("ulimit -f 100;", {"convert", cloud, inFolder(name)});
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_NE(result.err.find("File too large"), std::string::npos) << result.err;
+    EXPECT_EQ(entries(), before);
+  }
+}
+
 TEST_F(OutputTest, BelowARegularFile) {
   const PairFiles files = pair();
   const std::string file = write("file", "text");

@@ -6,10 +6,11 @@
 
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/cloud/move_file.hpp"
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
-#include "agricolmap/io/raster/raster_import.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
@@ -27,12 +28,8 @@ struct ConvertArguments {
 
 io::CloudFormat formatToWrite(const std::string& path) {
   if (const auto format = io::formatByEnding(path)) return *format;
-  throw UsageError(
-      fmt::format("{}: its ending tells no format; known are .ply, .pcd, .las and .laz", path));
-}
-
-bool isLas(io::CloudFormat format) {
-  return format == io::CloudFormat::kLas || format == io::CloudFormat::kLaz;
+  throw UsageError(fmt::format(
+      "{}: its ending tells no format; known are .ply, .pcd, .las, .laz and .copc.laz", path));
 }
 
 struct Written {
@@ -42,8 +39,8 @@ struct Written {
 
 /// From LAS to LAS point by point, with all that they have.
 Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudFormat format,
-                const io::CommonFrame* frame) {
-  std::optional<io::LasMove> move;
+                const io::CommonFrame* frame, const Crs& crs, Progress& progress) {
+  std::optional<io::CloudMove> move;
   if (frame != nullptr) {
     // Read for its origin alone: what is far from the others is left out as it is there.
     const Cloud cloud = io::readCloud(from, {false, frame->moving.get()});
@@ -52,34 +49,42 @@ Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudForm
     move->origin = cloud.origin;
     move->crs = frame->crs;
   }
-  const io::LasCopied copied = io::copyLas(from, to, format == io::CloudFormat::kLaz, move);
+  const std::uint64_t points = io::pointsOf(from);
+  const io::CopiedCloud copied = io::copyLas(from, to, format, move, crs, [&](std::uint64_t done) {
+    progress.share("convert", done, points);
+  });
   printWarnings(copied.warnings);
   return {copied.points, copied.left_out};
 }
 
-Written convertCloud(const ConvertArguments& arguments, const io::OutputPath& to,
-                     io::CloudFormat format) {
-  const std::string& from = arguments.files.front();
-  const io::FileCrs crs = io::crsOf(from, arguments.crs);
+Written convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
+                   const io::OutputPath& to, io::CloudFormat format, Progress& progress) {
+  const io::FileCrs crs = io::crsOfMap(from, arguments.crs);
   std::optional<io::CommonFrame> frame;
   if (!arguments.to_crs.empty()) frame = io::frameIn(crs, arguments.to_crs);
   printWarnings(frame ? frame->warnings : crs.warnings);
-  const auto source = io::formatByContent(io::MappedFile(from).text());
-  const bool said_anew = !arguments.crs.empty() && !frame;
-  if (source && isLas(*source) && isLas(format) && !said_anew) {
-    return copyLas(from, to, format, frame ? &*frame : nullptr);
+  const auto source = io::formatByContent(io::MappedFile(from.main).text());
+  if (source && io::isLas(*source) && io::isLas(format)) {
+    // COPC has no place for GeoTIFF keys: what they say is written as WKT.
+    const bool anew = !arguments.crs.empty() || format == io::CloudFormat::kCopc;
+    return copyLas(from.main, to, format, frame ? &*frame : nullptr,
+                   anew && crs.crs ? *crs.crs : Crs(), progress);
   }
   if (!frame && crs.crs && !io::isProjected(*crs.crs)) {
     throw InputError(fmt::format(
         "{}: its coordinates are degrees ({}), which are kept from LAS to LAS alone; bring them "
         "into a projected system (--to-crs EPSG:326<zone>: UTM north; 327<zone> south)",
-        from, crs.crs->name));
+        from.main.string(), crs.crs->name));
   }
-  Cloud cloud = io::readCloud(from, {true, frame ? frame->moving.get() : nullptr});
+  io::ImportOptions options;
+  arguments.flags.apply(optionTable(options));
+  Cloud cloud = from.raster && !frame && arguments.crs.empty()
+                    ? io::importOrthoDsm(from.main, from.model, options)
+                    : io::readMap(from, {true, frame ? frame->moving.get() : nullptr}, options);
   printWarnings(cloud.warnings);
   if (frame) cloud.crs = frame->crs;
   if (!frame && crs.crs) cloud.crs = *crs.crs;
-  if (!isLas(format) && !cloud.crs.wkt.empty()) {
+  if (!io::isLas(format) && !cloud.crs.wkt.empty()) {
     printWarnings(
         {fmt::format("{}: {} has no place for the coordinate system, {}; say it where "
                      "the file is used",
@@ -89,39 +94,27 @@ Written convertCloud(const ConvertArguments& arguments, const io::OutputPath& to
   return {cloud.size(), cloud.dropped_points};
 }
 
-Written convertRasters(const ConvertArguments& arguments, const io::OutputPath& to,
-                       io::CloudFormat format) {
-  io::ImportOptions options;
-  arguments.flags.apply(optionTable(options));
-  const Cloud cloud = io::importOrthoDsm(arguments.files[0], arguments.files[1], options);
-  printWarnings(cloud.warnings);
-  io::writeCloud(to, cloud, format);
-  return {cloud.size(), cloud.dropped_points};
-}
-
 ExitCode runConvert(ConvertArguments arguments, const Globals& globals) {
   if (arguments.output.empty()) {
     arguments.output = arguments.files.back();
     arguments.files.pop_back();
   }
-  const bool rasters = arguments.files.size() == 2;
-  if (!rasters && !arguments.flags.given().empty()) {
+  const io::MapFiles from = arguments.files.size() == 2
+                                ? io::MapFiles{arguments.files[0], arguments.files[1], true}
+                                : io::mapFilesOf(arguments.files.front());
+  if (!from.raster && !arguments.flags.given().empty()) {
     throw UsageError(fmt::format("{} would do nothing: it needs ORTHO.tif and DSM.tif",
                                  flagOf(arguments.flags.given().front())));
-  }
-  if (rasters && !(arguments.crs.empty() && arguments.to_crs.empty())) {
-    throw UsageError("--crs and --to-crs are for clouds; rasters say their coordinate system");
   }
   const io::CloudFormat format = formatToWrite(arguments.output);
   io::StagedFile output(arguments.output, globals.overwrite);
   Progress progress(globals);
-  progress.step(rasters ? "import" : "convert");
-  const Written written = rasters ? convertRasters(arguments, output.path(), format)
-                                  : convertCloud(arguments, output.path(), format);
+  progress.step(from.raster ? "import" : "convert");
+  const Written written = convertMap(arguments, from, output.path(), format, progress);
   output.commit();
   if (!globals.quiet) {
     fmt::print("{}: {} points, {} {}\n", arguments.output, written.points, written.left_out,
-               rasters ? "pixels without a height left out" : "left out");
+               from.raster ? "pixels without a height left out" : "left out");
   }
   return ExitCode::kOk;
 }
@@ -133,8 +126,10 @@ CommandSlot addConvertCommand(CLI::App& app, const Globals& globals) {
   CLI::App* command = app.add_subcommand(
       "convert", "Write a cloud, or an orthomosaic with its surface model, in another format");
   command
-      ->add_option("FILES", arguments->files,
-                   "IN OUT, or ORTHO.tif DSM.tif OUT; OUT ends in .ply, .pcd, .las or .laz")
+      ->add_option(
+          "FILES", arguments->files,
+          "IN OUT, or ORTHO.tif DSM.tif OUT; IN may be text and ORTHO.tif, too; OUT ends in .ply, "
+          ".pcd, .las, .laz or .copc.laz")
       ->required()
       ->expected(2, 3);
   command->add_option("--crs", arguments->crs,
@@ -156,7 +151,7 @@ CommandSlot addImportCommand(CLI::App& app, const Globals& globals) {
       ->required();
   command->add_option("DSM", arguments->files[1], "Surface model: GeoTIFF, same coordinate system")
       ->required();
-  command->add_option("-o,--output", arguments->output, "PLY, PCD, LAS or LAZ to write")
+  command->add_option("-o,--output", arguments->output, "PLY, PCD, LAS, LAZ or COPC to write")
       ->required();
   io::ImportOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the import");

@@ -1,11 +1,14 @@
 // agricolmap info CLOUD
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <vector>
 
+#include "agricolmap/core/robust.hpp"
 #include "agricolmap/core/stopwatch.hpp"
-#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/crs/crs.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
 #include "common.hpp"
 
@@ -32,11 +35,27 @@ void printCrs(const io::FileCrs& file) {
   fmt::print("\n");
 }
 
+/// Size of what all but one point in 500 lie in, along each axis [m].
+Eigen::Vector3d mostOf(const Cloud& cloud) {
+  constexpr std::size_t kTail = 1000;
+  Eigen::Vector3d size;
+  std::vector<float> values(cloud.size());
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::transform(cloud.xyz.begin(), cloud.xyz.end(), values.begin(),
+                   [&](const Eigen::Vector3f& point) { return point[axis]; });
+    const std::size_t low = values.size() / kTail;
+    size[axis] = static_cast<double>(valueAtRank(values, values.size() - 1 - low)) -
+                 static_cast<double>(valueAtRank(values, low));
+  }
+  return size;
+}
+
 ExitCode runInfo(const std::string& path) {
   const Stopwatch watch;
-  const Cloud cloud = io::readCloud(path);
+  const io::MapFiles files = io::mapFilesOf(path);
+  const Cloud cloud = io::readMap(files);
   const double seconds = watch.seconds();
-  const io::FileCrs crs = io::crsOf(path);
+  const io::FileCrs crs = io::crsOfMap(files);
   printWarnings(cloud.warnings);
   printWarnings(crs.warnings);
   const Box3 box = boundingBox(cloud);
@@ -55,12 +74,24 @@ ExitCode runInfo(const std::string& path) {
   fmt::print("y          {:.3f} to {:.3f}{}\n", low.y(), high.y(), unit);
   fmt::print("z          {:.3f} to {:.3f}{}\n", low.z(), high.z(), unit);
   fmt::print("extent     {:.2f} x {:.2f} x {:.2f}{}\n", size.x(), size.y(), size.z(), unit);
-  const double area = size.x() * size.y();
-  if (area > 0.0 && metres) {
-    fmt::print("density    {:.0f} points per m2 of the bounding box\n",
-               static_cast<double>(cloud.size()) / area);
+  // A few points that fly far off would be taken for the size of the field.
+  const Eigen::Vector3d most = mostOf(cloud);
+  const bool few_far = most.x() * most.y() < 0.5 * size.x() * size.y();
+  if (few_far) {
+    fmt::print("most of it {:.2f} x {:.2f} x {:.2f}{}: all but 0.2 % of the points\n", most.x(),
+               most.y(), most.z(), unit);
   }
-  fmt::print("offset.xyz {}\n", io::readOffsetBeside(path) ? "found beside the cloud" : "none");
+  const double area = few_far ? most.x() * most.y() : size.x() * size.y();
+  if (area > 0.0 && metres) {
+    fmt::print("density    {:.0f} points per m2 of the {}\n",
+               static_cast<double>(cloud.size()) / area,
+               few_far ? "area of most of it" : "bounding box");
+  }
+  fmt::print("offset.xyz {}\n",
+             io::readOffsetBeside(files.main) ? "found beside the cloud" : "none");
+  for (const std::string& file : io::offsetsPassedBy(files.main)) {
+    fmt::print("passed by  {}\n", file);
+  }
   fmt::print("read in    {:.3f} s\n", seconds);
   return ExitCode::kOk;
 }
@@ -70,7 +101,7 @@ ExitCode runInfo(const std::string& path) {
 CommandSlot addInfoCommand(CLI::App& app, const Globals&) {
   auto path = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("info", "Say what is in a cloud");
-  command->add_option("CLOUD", *path, "LAS, LAZ, PLY or PCD")->required();
+  command->add_option("CLOUD", *path, "LAS, LAZ, PLY, PCD, text, or ORTHO.tif,DSM.tif")->required();
   return {command, [path] { return runInfo(*path); }};
 }
 

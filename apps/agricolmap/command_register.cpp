@@ -9,6 +9,7 @@
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/path_file.hpp"
 #include "agricolmap/pipeline/followed.hpp"
@@ -81,12 +82,12 @@ report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments,
   return info;
 }
 
-/// Where the registration puts points of the moving file. Both must outlive it.
+/// Where the registration puts points of the moving file.
 io::PointMove moveOf(const pipeline::Registration& result, const Cloud& moving) {
   const Eigen::Affine3d& fixed_from_moving = result.transform->fixed_from_moving;
   if (!result.bent()) return fixed_from_moving;
-  return {fixed_from_moving, [displacement = pipeline::Displacement(result, moving)](
-                                 const Eigen::Vector3d& point) { return displacement.at(point); }};
+  return {fixed_from_moving, [function = pipeline::Displacement(result, moving).function()](
+                                 const Eigen::Vector3d& point) { return function.at(point); }};
 }
 
 /// Fills `output` with everything but the report.
@@ -131,9 +132,12 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   Monitor monitor(globals.stop, [&](Stage stage) { progress.step(nameOf(stage)); });
   report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
   info.seed = static_cast<std::uint64_t>(options.seed);
-  info.prior = initialGuess(arguments.files.fixed, arguments.files.moving, arguments.prior,
-                            info.prior_source);
+  info.prior =
+      initialGuess(io::mapFilesOf(arguments.files.fixed).main,
+                   io::mapFilesOf(arguments.files.moving).main, arguments.prior, info.prior_source);
   const LoadedPair pair = monitor.run(Stage::kRead, [&] { return loadPair(arguments.files); });
+  info.fixed_file_crs = pair.frame.fixed_file;
+  info.moving_file_crs = pair.frame.moving_file;
   for (const std::string& warning : pair.frame.warnings) monitor.warn(warning);
   printWarnings(pair.fixed.warnings);
   printWarnings(pair.moving.warnings);

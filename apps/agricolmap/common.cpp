@@ -1,8 +1,10 @@
 #include "common.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "agricolmap/io/text/matrix_file.hpp"
@@ -19,11 +21,21 @@ Progress::~Progress() {
 }
 
 void Progress::step(std::string_view what) {
+  since_step_ = Stopwatch();
   if (active_) {
     std::fprintf(stderr, "\r\033[K%.*s ...", static_cast<int>(what.size()), what.data());
     std::fflush(stderr);
   }
   spdlog::debug("{}", what);
+}
+
+void Progress::share(std::string_view what, std::uint64_t done, std::uint64_t points) {
+  if (!active_ || done == 0 || points == 0) return;
+  const double rate = static_cast<double>(done) / std::max(since_step_.seconds(), 1e-3);
+  const double left = static_cast<double>(points - std::min(points, done)) / rate;
+  fmt::print(stderr, "\r\033[K{}: {:.0f} %, {:.1f} million points/s, {:.0f} s left", what,
+             100.0 * static_cast<double>(done) / static_cast<double>(points), 1e-6 * rate, left);
+  std::fflush(stderr);
 }
 
 std::string flagsFor(Remedy remedy) {
@@ -69,6 +81,12 @@ Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
   }
   const auto world_from_fixed = io::readOffsetBeside(fixed);
   const auto world_from_moving = io::readOffsetBeside(moving);
+  for (const std::filesystem::path& cloud : {fixed, moving}) {
+    for (const std::string& file : io::offsetsPassedBy(cloud)) {
+      spdlog::warn("{} is passed by: were it the offset of {}, it would be called {}.offset.xyz",
+                   file, cloud.string(), cloud.stem().string());
+    }
+  }
   if (!world_from_fixed && !world_from_moving) {
     source = "coordinates as they stand";
     return Eigen::Affine3d::Identity();

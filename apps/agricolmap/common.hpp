@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <stop_token>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/stopwatch.hpp"
 #include "support/exit_code.hpp"
 
 namespace agricolmap {
@@ -37,6 +39,7 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals);
 CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addControlPointsCommand(CLI::App& app, const Globals& globals);
+CommandSlot addApplyCommand(CLI::App& app, const Globals& globals);
 CommandSlot addConvertCommand(CLI::App& app, const Globals& globals);
 CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
@@ -50,9 +53,12 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void step(std::string_view what);
+  /// How far a step has come, of how many points, how fast, and how long it will take.
+  void share(std::string_view what, std::uint64_t done, std::uint64_t points);
 
  private:
   bool active_;
+  Stopwatch since_step_;
 };
 
 /// The flags that are this remedy, as ` (--overwrite)`; empty where there are none.

@@ -4,6 +4,10 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
 #include <new>
 #include <string>
 #include <utility>
@@ -12,6 +16,7 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/processor.hpp"
+#include "agricolmap/io/raster/raster_file.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 #include "support/signal_stop.hpp"
@@ -22,8 +27,8 @@ namespace {
 constexpr const char* kFooter =
     "Exit codes: 0 done, registration accepted; 1 internal error; 2 bad usage; 3 bad input;\n"
     "4 output cannot be written; 10 registration rejected; 11 ambiguous; 130 interrupted.\n"
-    "Lengths are metres, clouds are LAS, LAZ, PLY or PCD, transforms map MOVING to FIXED file "
-    "coordinates.";
+    "Lengths are metres, maps are LAS, LAZ, PLY, PCD, text or ORTHO.tif,DSM.tif, transforms map "
+    "MOVING to FIXED file coordinates.";
 
 void setUpLogging(const Globals& globals) {
   spdlog::set_default_logger(spdlog::stderr_color_st("agricolmap"));
@@ -53,7 +58,8 @@ ExitCode run(int argc, char** argv) {
       addRegisterCommand(app, globals), addSimulateCommand(app, globals),
       addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
       addConvertCommand(app, globals),  addImportCommand(app, globals),
-      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
+      addApplyCommand(app, globals),    addInfoCommand(app, globals),
+      addDocumentCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;
@@ -73,6 +79,7 @@ ExitCode run(int argc, char** argv) {
   globals.seed_given = seed->count() > 0;
   setUpLogging(globals);
   requireProcessor();
+  io::silenceGdal();
   const SignalStop signals;
   globals.stop = signals.token();
   const StopScope scope(globals.stop);
@@ -81,6 +88,15 @@ ExitCode run(int argc, char** argv) {
     if (command.app->parsed()) return command.run();
   }
   return ExitCode::kUsage;
+}
+
+/// What was said must have arrived: of a full disk nothing else tells.
+void requireStdout() {
+  std::cout.flush();
+  const bool flushed = std::fflush(stdout) == 0;
+  const std::string reason = flushed ? "" : fmt::format(": {}", std::strerror(errno));
+  if (flushed && std::ferror(stdout) == 0 && std::cout) return;
+  throw OutputError(fmt::format("standard output: cannot be written{}", reason));
 }
 
 }  // namespace
@@ -93,13 +109,19 @@ int main(int argc, char** argv) {
     return static_cast<int>(code);
   };
   try {
-    return static_cast<int>(agricolmap::run(argc, argv));
+    const ExitCode code = agricolmap::run(argc, argv);
+    agricolmap::requireStdout();
+    return static_cast<int>(code);
   } catch (const agricolmap::Error& error) {
     return fail(error.what(), agricolmap::exitCodeOf(error.kind()),
                 agricolmap::flagsFor(error.remedy()));
   } catch (const std::bad_alloc&) {
     return fail("out of memory; crop the clouds or enlarge grid.cell", ExitCode::kInternal);
   } catch (const std::exception& error) {
+    // Of fmt::print, on a full disk.
+    if (std::ferror(stdout) != 0) {
+      return fail(fmt::format("standard output: {}", error.what()).c_str(), ExitCode::kOutput);
+    }
     return fail(error.what(), ExitCode::kInternal);
   }
 }

@@ -7,67 +7,63 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/cloud/move_file.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
-#include "agricolmap/io/text/mapped_file.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 
 namespace agricolmap {
 namespace {
 
 constexpr std::array kFormats{io::CloudFormat::kPly, io::CloudFormat::kPcd, io::CloudFormat::kLas,
-                              io::CloudFormat::kLaz};
-
-bool isLas(io::CloudFormat format) {
-  return format == io::CloudFormat::kLas || format == io::CloudFormat::kLaz;
-}
-
-io::CloudFormat formatOf(const std::string& path) {
-  return io::formatByContent(io::MappedFile(path).text()).value_or(io::CloudFormat::kPly);
-}
+                              io::CloudFormat::kLaz, io::CloudFormat::kCopc};
 
 std::string nameOfAligned(io::CloudFormat format) { return "aligned." + io::endingOf(format); }
 
 }  // namespace
 
 void PairFiles::addTo(CLI::App& command) {
-  command.add_option("FIXED", fixed, "The wide map: LAS, LAZ, PLY or PCD");
-  command.add_option("MOVING", moving, "The map to be moved: LAS, LAZ, PLY or PCD");
+  command.add_option("FIXED", fixed,
+                     "The wide map: LAS, LAZ, PLY, PCD, lines of text, or ORTHO.tif,DSM.tif");
+  command.add_option("MOVING", moving, "The map to be moved: the same");
   command.add_option("--fixed-crs", fixed_crs,
                      "Coordinate system of FIXED: EPSG:32632, WKT or a file with it. Default: what "
                      "the file or a .prj beside it says, else that of MOVING");
   command.add_option("--moving-crs", moving_crs, "The same of MOVING; brought to that of FIXED");
   command.add_option(
       "--aligned-format", aligned,
-      "Format of the aligned cloud: ply, pcd, las, laz, or auto: las or laz as MOVING is, "
+      "Format of the aligned cloud: ply, pcd, las, laz, copc, or auto: las or laz as MOVING is, "
       "else ply [auto]");
 }
 
 void PairFiles::check() const {
-  if (aligned == "auto" || std::any_of(kFormats.begin(), kFormats.end(), [&](auto format) {
-        return aligned == io::endingOf(format);
-      })) {
-    return;
+  if (aligned != "auto") formatNamed("--aligned-format", aligned);
+}
+
+io::CloudFormat formatNamed(const std::string& flag, const std::string& name) {
+  for (const io::CloudFormat format : kFormats) {
+    const std::string ending = io::endingOf(format);
+    if (name == ending.substr(0, ending.find('.'))) return format;
   }
-  throw UsageError(
-      fmt::format("--aligned-format {}: is none of ply, pcd, las, laz and auto", aligned));
+  throw UsageError(fmt::format("{} {}: is none of ply, pcd, las, laz, copc and auto", flag, name));
 }
 
 LoadedPair loadPair(const PairFiles& files) {
   LoadedPair pair;
-  const io::FileCrs fixed = io::crsOf(files.fixed, files.fixed_crs);
-  const io::FileCrs moving = io::crsOf(files.moving, files.moving_crs);
+  const io::MapFiles fixed_files = io::mapFilesOf(files.fixed);
+  const io::MapFiles moving_files = io::mapFilesOf(files.moving);
+  const io::FileCrs fixed = io::crsOfMap(fixed_files, files.fixed_crs);
+  const io::FileCrs moving = io::crsOfMap(moving_files, files.moving_crs);
   pair.frame = io::commonFrame(fixed, moving);
-  const io::CloudFormat own = formatOf(files.moving);
-  pair.aligned = isLas(own) ? own : io::CloudFormat::kPly;
-  for (const io::CloudFormat format : kFormats) {
-    if (files.aligned == io::endingOf(format)) pair.aligned = format;
-  }
+  pair.format =
+      moving_files.raster ? io::CloudFormat::kPly : io::formatOf(moving_files.main);
+  pair.aligned = io::isLas(pair.format) ? pair.format : io::CloudFormat::kPly;
+  if (files.aligned != "auto") pair.aligned = formatNamed("--aligned-format", files.aligned);
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
     Cloud& cloud = i == 0 ? pair.fixed : pair.moving;
     const io::CoordinateMap* const map = (i == 0 ? pair.frame.fixed : pair.frame.moving).get();
-    cloud = io::readCloud(i == 0 ? files.fixed : files.moving, {true, map});
+    cloud = io::readMap(i == 0 ? fixed_files : moving_files, {true, map});
     cloud.crs = pair.frame.crs;
   });
   io::checkGroundScale(pair.fixed.name, pair.frame.crs, pair.fixed.origin.head<2>());
@@ -84,17 +80,13 @@ std::vector<std::string> writeAligned(const PairFiles& files, const LoadedPair& 
                                       const io::PointMove& fixed_from_moving,
                                       const io::StagedOutput& output) {
   const io::OutputPath path = output.path(nameOfAligned(pair.aligned));
-  if (!isLas(pair.aligned) || !isLas(formatOf(files.moving))) {
+  if (!io::keepsAttributes(pair.format, pair.aligned)) {
     io::writeCloud(path, pair.moving, pair.aligned, fixed_from_moving);
     return {};
   }
-  io::LasMove move;
-  move.map = pair.frame.moving.get();
-  move.target_from_file = fixed_from_moving;
-  move.origin = pair.moving.origin;
-  move.crs = pair.frame.crs;
-  io::LasCopied copied =
-      io::copyLas(files.moving, path, pair.aligned == io::CloudFormat::kLaz, move);
+  io::CopiedCloud copied = io::moveFile(
+      io::mapFilesOf(files.moving).main, path, pair.aligned,
+      {pair.frame.moving.get(), pair.moving.origin, fixed_from_moving, pair.frame.crs});
   if (copied.left_out > 0) {
     copied.warnings.push_back(
         fmt::format("{}: {} points were left out of the aligned cloud: too far from the others",

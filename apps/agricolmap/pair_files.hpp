@@ -15,6 +15,7 @@
 
 namespace agricolmap {
 
+/// Each the file of a cloud, an orthomosaic, or ORTHO.tif,DSM.tif.
 struct PairFiles {
   std::string fixed;
   std::string moving;
@@ -32,15 +33,19 @@ struct LoadedPair {
   Cloud fixed;
   Cloud moving;
   io::CommonFrame frame;
-  io::CloudFormat aligned = io::CloudFormat::kPly;
+  io::CloudFormat format = io::CloudFormat::kPly;   ///< of MOVING
+  io::CloudFormat aligned = io::CloudFormat::kPly;  ///< of the aligned cloud
 };
 LoadedPair loadPair(const PairFiles& files);
+
+/// The format that is called `name` ("copc"). Throws UsageError, naming `flag`, where none is.
+io::CloudFormat formatNamed(const std::string& flag, const std::string& name);
 
 /// "aligned.ply", for every format.
 std::vector<std::string> alignedNames();
 
-/// Writes the moving cloud, moved: from LAS to LAS or LAZ point by point with all attributes, else
-/// its coordinates and colours. What the caller should know is returned.
+/// Writes the moving cloud, moved: from LAS to LAS, LAZ or COPC and from PLY to PLY point by point
+/// with all attributes, else its coordinates and colours. What the caller should know is returned.
 std::vector<std::string> writeAligned(const PairFiles& files, const LoadedPair& pair,
                                       const io::PointMove& fixed_from_moving,
                                       const io::StagedOutput& output);

@@ -47,6 +47,8 @@ SignalStop::SignalStop() {
     }
     if (why == kStop) source_.request_stop();
   });
+  // A file that grows beyond what the shell allows is an error like that of a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   signalled = false;
   wake_fd = wake_[1];
   handleSignals(onSignal);
@@ -54,6 +56,7 @@ SignalStop::SignalStop() {
 
 SignalStop::~SignalStop() {
   handleSignals(SIG_DFL);
+  std::signal(SIGXFSZ, SIG_DFL);
   wake_fd = -1;
   [[maybe_unused]] const auto written = write(wake_[1], &kQuit, 1);
   waiter_.join();

@@ -12,10 +12,10 @@
 
 namespace agricolmap {
 
-/// Reads PLY, PCD 0.7, LAS 1.0 to 1.5 and, in a build with LASzip, LAZ and COPC, told apart by
-/// content. Points in file order; those with a NaN, an infinity or a coordinate beyond 1e8 m and
-/// those marked as withheld are left out and counted. Throws InputError naming file, place and
-/// reason when the file is not what its header says.
+/// Reads PLY, PCD, LAS 1.0 to 1.5, lines of text and, in a build with LASzip, LAZ and COPC, told
+/// apart by content. Points in file order; those with a NaN, an infinity or a coordinate beyond 1e8
+/// m and those marked as withheld are left out and counted. Throws InputError naming file, place
+/// and reason when the file is not what its header says.
 AGRICOLMAP_EXPORT Cloud readCloud(const std::filesystem::path& path);
 
 /// A cloud from points in memory, by the same rules. `colours` is empty or one per point; `name`
@@ -34,7 +34,7 @@ AGRICOLMAP_EXPORT void writePly(const std::filesystem::path& path, const Cloud& 
                                 const Transform& target_from_file);
 
 /// Reads a 4×4 matrix: 16 numbers, row-major, last row 0 0 0 1, invertible. Commas, brackets and
-/// `#` comments are fine. Throws InputError.
+/// `#` comments are fine, and so is PDAL's JSON. Throws InputError.
 AGRICOLMAP_EXPORT Transform readMatrix(const std::filesystem::path& path);
 
 /// Writes 17 significant digits: what is read back is the same to the bit. Throws OutputError.

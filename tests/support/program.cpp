@@ -60,10 +60,9 @@ bool readSome(int fd, std::string& text) {
 
 }  // namespace
 
-ProgramResult runAgricolmap(const std::vector<std::string>& arguments,
-                            const std::string& interrupt_at) {
-  std::vector<std::string> words = {programPath()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+namespace {
+
+ProgramResult runWords(std::vector<std::string> words, const std::string& interrupt_at) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -92,6 +91,22 @@ ProgramResult runAgricolmap(const std::vector<std::string>& arguments,
   ::waitpid(child, &status, 0);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+}  // namespace
+
+ProgramResult runAgricolmap(const std::vector<std::string>& arguments,
+                            const std::string& interrupt_at) {
+  std::vector<std::string> words = {programPath()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return runWords(std::move(words), interrupt_at);
+}
+
+ProgramResult runInShell(const std::string& before, const std::vector<std::string>& arguments,
+                         const std::string& after) {
+  std::string line = before + " '" + programPath() + "'";
+  for (const std::string& argument : arguments) line += " '" + argument + "'";
+  return runWords({"/bin/sh", "-c", line + " " + after}, "");
 }
 
 }  // namespace agricolmap::test

@@ -17,4 +17,8 @@ struct ProgramResult {
 ProgramResult runAgricolmap(const std::vector<std::string>& arguments,
                             const std::string& interrupt_at = "");
 
+/// Runs `before` agricolmap `arguments` `after` in a shell, as "ulimit -f 8;" and "> /dev/full".
+ProgramResult runInShell(const std::string& before, const std::vector<std::string>& arguments,
+                         const std::string& after = "");
+
 }  // namespace agricolmap::test

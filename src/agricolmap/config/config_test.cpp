@@ -154,6 +154,7 @@ TEST(Yaml, RefusesWhatIsNoMapOfOptions) {
   EXPECT_THAT(refusal("fast: true\n  count: [1"), HasSubstr("my.yaml:"));
   EXPECT_THAT(refusal("count: 2\n---\ncount: 3"), HasSubstr("second document"));
   EXPECT_THAT(refusal("grid: &g {leaf: *g}"), HasSubstr("unknown option"));
+  EXPECT_THAT(refusal(",count: 3"), HasSubstr("my.yaml:1: not valid YAML"));
 }
 
 TEST(Yaml, ReadsFilesAndSaysWhichItCannot) {

@@ -1,6 +1,7 @@
 #include "agricolmap/config/yaml.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -16,6 +17,43 @@
 
 namespace agricolmap::config {
 namespace {
+
+/// Where documents begin.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  std::vector<YAML::Mark> marks;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {}
+  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/,
+                       YAML::anchor_t /*anchor*/, YAML::EmitterStyle::value /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapEnd() override {}
+};
+
+/// YAML::LoadAll would go on for ever, and fill the memory, where a document begins with ',': the
+/// parser finds an empty one there again and again.
+void requireOneDocument(const std::string& text, const std::string& name) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts starts;
+  if (!parser.HandleNextDocument(starts) || !parser.HandleNextDocument(starts)) return;
+  if (starts.marks.size() < 2) return;
+  const YAML::Mark& second = starts.marks[1];
+  if (second.pos == starts.marks[0].pos) {
+    throw UsageError(
+        fmt::format("{}:{}: not valid YAML: no option begins so", name, second.line + 1));
+  }
+  throw UsageError(
+      fmt::format("{}:{}: a second document ('---') in an options file; put all options into one",
+                  name, second.line + 1));
+}
 
 int lineOf(const YAML::Node& node) { return node.Mark().line + 1; }
 
@@ -118,14 +156,8 @@ std::vector<std::string> loadYamlText(const std::string& text, const std::string
                                       OptionTable& table) {
   Loader loader(name, table);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
-      throw UsageError(
-          fmt::format("{}:{}: a second document ('---') in an options file; put all "
-                      "options into one",
-                      name, lineOf(documents[1])));
-    }
-    if (!documents.empty()) loader.read(documents.front());
+    requireOneDocument(text, name);
+    loader.read(YAML::Load(text));
   } catch (const YAML::Exception& error) {
     throw UsageError(
         fmt::format("{}:{}: not valid YAML: {}", name, error.mark.line + 1, error.msg));

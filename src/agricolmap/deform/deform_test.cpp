@@ -7,6 +7,8 @@
 #include <functional>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/deform/file_deformation.hpp"
 #include "agricolmap/map/test_scene.hpp"
 
 namespace agricolmap::deform {
@@ -166,6 +168,25 @@ TEST(SlipRms, PartsPushedIntoOneAnotherCannotBeToldApartWhereTheyOverlap) {
   EXPECT_EQ(slipRms(deformation), 0.0);
   deformation.slips.front().place_deviation = 0.06;
   EXPECT_GT(slipRms(deformation), 0.01);
+}
+
+TEST(FileDeformation, IsTheDeformationInTheFiles) {
+  const Path path({{0.0, 0.0}, {4.0, 1.0}, {8.0, 0.5}});
+  Deformation deformation(path, rotation2(0.2), SplineBasis(path.length(), 1.1));
+  Random random(3);
+  for (double& value : deformation.coefficients.reshaped()) value = random.normal(0.05);
+  deformation.slips.push_back({.along = 5.0, .offset = {0.2, -0.1}});
+  Eigen::Affine3d levelled_from_moving(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()) *
+                                       Eigen::Translation3d(-400000.0, -5e6, -100.0));
+  Eigen::Matrix3d fixed_from_displacement;
+  fixed_from_displacement << 1.1, 0.1, 0.0, -0.1, 0.9, 0.02, 0.0, 0.03, 1.0;
+  const FileDeformation function(deformation, levelled_from_moving, fixed_from_displacement);
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3d levelled(random.uniform(-3.0, 11.0), random.uniform(-3.0, 3.0), 0.1);
+    const Eigen::Vector3d point = levelled_from_moving.inverse() * levelled;
+    const Eigen::Vector2d place = (levelled_from_moving * point).head<2>();
+    EXPECT_LT((function.at(point) - fixed_from_displacement * deformation.at(place)).norm(), 1e-12);
+  }
 }
 
 }  // namespace

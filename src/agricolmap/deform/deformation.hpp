@@ -37,6 +37,7 @@ class Deformation {
   Eigen::Vector2d tangent(double along) const { return turn_ * path_.tangent(along); }
 
   const Path& path() const { return path_; }
+  const Eigen::Matrix2d& turn() const { return turn_; }
   const SplineBasis& basis() const { return basis_; }
 
   /// Coefficients of d, one row each: x, y, z [m].

@@ -14,6 +14,13 @@ class SplineBasis {
   SplineBasis(double length, double spacing)
       : spans_(std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)))),
         spacing_(length / spans_) {}
+  /// With so many spans of exactly this length [m], as another one says that it has.
+  static SplineBasis ofSpans(int spans, double spacing) {
+    SplineBasis basis(spacing, spacing);
+    basis.spans_ = spans;
+    basis.spacing_ = spacing;
+    return basis;
+  }
 
   /// The four coefficients that a place hangs on, by value and by derivative [1/m].
   struct At {
@@ -39,6 +46,7 @@ class SplineBasis {
     return at;
   }
 
+  int spans() const { return spans_; }
   int size() const { return spans_ + 3; }      ///< number of coefficients
   double spacing() const { return spacing_; }  ///< of the nodes [m]
   double length() const { return spacing_ * spans_; }

@@ -50,6 +50,9 @@ constexpr double kLowerPercentiles[] = {1.0, 0.3, 0.1, 0.03, 0.0};  ///< of the 
 /// than this [m] is not lower.
 constexpr double kLeastSupport = 0.15;
 constexpr double kSameHeight = 0.05;
+/// Beside a plane that is too steep for a field, one under a canopy needs so many cells of those of
+/// the steep one: a strip on its edge stands on a handful, which may well be level.
+constexpr double kCellsBesideSteep = 0.5;
 
 /// Points spread over the cloud, in the guess frame: one of every `stride`, but not always the
 /// same one, which in a cloud in raster order may be that of the same columns in every row.
@@ -122,10 +125,15 @@ Levelling levelFrom(const Eigen::Affine3d& start, const Cloud& cloud, const Leve
     const LevelPoints low =
         lowPoints(turnedPoints(points, levelled), options.cell, options.percentile);
     if (low.size() < 3) {
+      Eigen::AlignedBox3d box;
+      for (const Eigen::Vector3d& p : points) box.extend(p);
       throw InputError(fmt::format(
-          "{}: only {} ground cells of {} m hold 3 points or more; the cloud is too sparse or too "
-          "small to level (reduce level.cell)",
-          cloud.name, low.size(), options.cell));
+          "{}: only {} ground cells of {} m hold 3 points or more, of {} points over {:.3g} x "
+          "{:.3g} "
+          "m: are its coordinates metres? If they are, the cloud is too sparse or too small to "
+          "level "
+          "(reduce level.cell)",
+          cloud.name, low.size(), options.cell, cloud.size(), box.sizes().x(), box.sizes().y()));
     }
     const GroundPlane plane = fitPlane(low, centre, options.cell);
     makeLevel(plane, centre, levelled);
@@ -164,6 +172,7 @@ UnderCanopy levelBySupport(Eigen::Affine3d levelled, const LevelPoints& points,
 /// Under a crop that nearly closes, few of a cell's points are of the ground, and of many cells
 /// none: of the planes that enough cells support, at `found` and at lower percentiles, the lowest.
 /// Not at once: clouds have points below the ground, too.
+/// Of planes beside one that is too steep only those that rest on many of its cells.
 Levelling levelUnderCanopy(const Levelling& found, const LevelPoints& points,
                            const Eigen::Vector3d& centre, const LevelOptions& options) {
   const Eigen::Affine3d starts[] = {Eigen::Affine3d::Identity(), found.levelled_from_guess};
@@ -173,7 +182,12 @@ Levelling levelUnderCanopy(const Levelling& found, const LevelPoints& points,
     planes[i] =
         levelBySupport(starts[i % std::size(starts)], points, centre, options.cell, percentile);
   });
-  std::erase_if(planes, [](const UnderCanopy& plane) { return plane.share < kLeastSupport; });
+  const bool steep = found.tilt > radians(options.max_tilt_deg);
+  const double fewest = steep ? kCellsBesideSteep * static_cast<double>(found.cells) : 0.0;
+  std::erase_if(planes, [&](const UnderCanopy& plane) {
+    const double cells = plane.share * static_cast<double>(plane.levelling.cells);
+    return plane.share < kLeastSupport || cells < fewest;
+  });
   double highest = -std::numeric_limits<double>::infinity();
   for (const UnderCanopy& plane : planes) highest = std::max(highest, plane.height);
   const UnderCanopy* best = nullptr;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/error.hpp"
@@ -56,6 +58,46 @@ TEST(Level, ANarrowStripOfATallCropStandsUpright) {
   }
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_LT(level.tilt, 0.02);
+}
+
+// It stands on a handful of cells, which lie in a line and are level.
+TEST(Level, AStripOnItsEdgeIsRefusedAsTilted) {
+  for (const auto& [roll, pitch] : {std::pair{90.0, 0.0}, {80.0, 0.0}, {0.0, 90.0}, {100.0, 1.0}}) {
+    Random random(7);
+    const Eigen::Affine3d tilt(Eigen::AngleAxisd(radians(roll), Eigen::Vector3d::UnitX()) *
+                               Eigen::AngleAxisd(radians(pitch), Eigen::Vector3d::UnitY()));
+    Cloud cloud;
+    cloud.name = "strip";
+    for (int i = 0; i < 50000; ++i) {
+      // Rough ground, so that a canopy is thought of.
+      Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 3.7), random.normal(0.05));
+      p.z() += 0.06 * std::sin(2.0 * p.x()) * std::sin(3.0 * p.y());
+      if (random.chance(0.3)) p.z() += random.uniform(0.0, 0.5);
+      cloud.xyz.push_back((tilt * p).cast<float>());
+    }
+    try {
+      levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+      ADD_FAILURE() << "roll " << roll << ", pitch " << pitch << " was taken as level";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("tilted by"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Level, AsksForTheUnitsOfACloudThatSeemsSparse) {
+  Random random(7);
+  Cloud cloud;
+  cloud.name = "centimetres";
+  for (int i = 0; i < 2000; ++i) {
+    cloud.xyz.emplace_back(random.uniform(0, 1000), random.uniform(0, 220), random.normal(1.0));
+  }
+  try {
+    levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+    ADD_FAILURE() << "levelled";
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_LT(what.find("metres?"), what.find("too sparse")) << what;
+  }
 }
 
 // Under a canopy that nearly closes one point in twenty is of the ground, and the lower leaves of a

@@ -39,6 +39,13 @@ double freedomOf(const deform::Deformation& deformation) {
          kFreedomOfSlip * static_cast<double>(deformation.slips.size());
 }
 
+/// The bend comes before the pose that was found with it, and the heights' tilt behind both.
+Eigen::Matrix3d throughPose(const Placed& placed) {
+  Eigen::Matrix3d before = Eigen::Matrix3d::Identity();
+  before.topLeftCorner<2, 2>() = placed.followed->bend.pose.linear().inverse();
+  return refine::liftPose(placed.pose, placed.heights).linear() * before;
+}
+
 }  // namespace
 
 void followBends(const refine::PairSignals& signals, const SearchSpace& space,
@@ -88,20 +95,18 @@ void followBends(const refine::PairSignals& signals, const SearchSpace& space,
 
 Displacement::Displacement(const Registration& registration, const Cloud& moving)
     : registration_(registration),
-      levelled_from_moving_(registration.maps.frames.levelled_from_moving *
-                            Eigen::Translation3d(-moving.origin)),
-      file_from_levelled_(registration.maps.frames.levelled_from_fixed.inverse().linear()) {}
+      file_from_levelled_(registration.maps.frames.levelled_from_fixed.inverse().linear()),
+      function_(
+          registration.placed->followed->bend.deformation,
+          registration.maps.frames.levelled_from_moving * Eigen::Translation3d(-moving.origin),
+          file_from_levelled_ * throughPose(*registration.placed)) {}
 
 Eigen::Vector3d Displacement::inFile(const Eigen::Vector3d& levelled) const {
   return file_from_levelled_ * levelled;
 }
 
 Eigen::Vector3d Displacement::at(const Eigen::Vector3d& moving_point) const {
-  const Placed& placed = *registration_.placed;
-  const deform::Bend& bend = placed.followed->bend;
-  const Eigen::Vector3d point = levelled_from_moving_ * moving_point;
-  const Eigen::Vector3d straight = deform::unbent(point, bend.deformation, bend.pose);
-  return inFile(refine::liftPose(placed.pose, placed.heights).linear() * (straight - point));
+  return function_.at(moving_point);
 }
 
 Eigen::Vector3d Displacement::place(const Eigen::Vector3d& moving_point) const {
@@ -111,13 +116,13 @@ Eigen::Vector3d Displacement::place(const Eigen::Vector3d& moving_point) const {
 Eigen::Vector3d Displacement::pathPoint(double along) const {
   const deform::Path& path = registration_.placed->followed->bend.deformation.path();
   const Eigen::Vector2d point = path.point(along);
-  return levelled_from_moving_.inverse() * Eigen::Vector3d(point.x(), point.y(), 0.0);
+  return function_.levelledFromMoving().inverse() * Eigen::Vector3d(point.x(), point.y(), 0.0);
 }
 
 Eigen::Matrix3d Displacement::covarianceAt(const Eigen::Vector3d& moving_point) const {
   const Placed& placed = *registration_.placed;
   const deform::Deformation& deformation = placed.followed->bend.deformation;
-  const Eigen::Vector2d point = (levelled_from_moving_ * moving_point).head<2>();
+  const Eigen::Vector2d point = (function_.levelledFromMoving() * moving_point).head<2>();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   covariance.topLeftCorner<2, 2>() =
       verdict::placeCovariance(*placed.uncertainty, deformation.covarianceAt(point));

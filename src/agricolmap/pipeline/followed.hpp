@@ -3,6 +3,7 @@
 #pragma once
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/deform/file_deformation.hpp"
 #include "agricolmap/pipeline/judgement.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 
@@ -33,11 +34,13 @@ class Displacement {
   Eigen::Vector3d place(const Eigen::Vector3d& moving_point) const;
   /// A direction of the levelled frame in the fixed file's axes.
   Eigen::Vector3d inFile(const Eigen::Vector3d& levelled) const;
+  /// The function alone, which needs no registration to live on.
+  const deform::FileDeformation& function() const { return function_; }
 
  private:
   const Registration& registration_;
-  Eigen::Affine3d levelled_from_moving_;  ///< file → levelled
-  Eigen::Matrix3d file_from_levelled_;    ///< directions of the fixed frame
+  Eigen::Matrix3d file_from_levelled_;  ///< directions of the fixed frame
+  deform::FileDeformation function_;
 };
 
 /// Where the registration puts every point of the moving cloud, in the fixed file's coordinates:

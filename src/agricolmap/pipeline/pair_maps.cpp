@@ -108,14 +108,31 @@ void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map:
       fixed_box.sizes().x(), fixed_box.sizes().y()));
 }
 
+/// Where the file's x and y axes point from above. One that stands upright points nowhere: then
+/// across the other one.
+Eigen::Matrix2d axesFromAbove(const Eigen::Matrix3d& levelled_from_moving) {
+  constexpr double kLeast = 0.5;
+  const Eigen::Matrix2d both = levelled_from_moving.topLeftCorner<2, 2>();
+  const Eigen::RowVector2d lengths = both.colwise().norm();
+  Eigen::Matrix2d axes = both.colwise().normalized();
+  if (lengths.minCoeff() >= kLeast * lengths.maxCoeff() && std::abs(axes.determinant()) >= kLeast) {
+    return axes;
+  }
+  if (lengths.x() >= lengths.y()) {
+    axes.col(1) = Eigen::Vector2d(-axes(1, 0), axes(0, 0));
+  } else {
+    axes.col(0) = Eigen::Vector2d(axes(1, 1), -axes(0, 1));
+  }
+  return axes;
+}
+
 SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,
                         const PriorUncertainty& uncertainty) {
   SearchSpace space;
   space.uncertainty = uncertainty;
   space.turn = frames.turn;
   space.centre = moving.center();
-  const Eigen::Matrix2d axes = frames.levelled_from_moving.linear().topLeftCorner<2, 2>();
-  space.scale_axes = axes.colwise().normalized();
+  space.scale_axes = axesFromAbove(frames.levelled_from_moving.linear());
   return space;
 }
 

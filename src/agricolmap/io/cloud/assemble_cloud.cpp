@@ -7,10 +7,13 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/io/cloud/colour_scale.hpp"
+#include "agricolmap/io/cloud/hole_height.hpp"
 #include "agricolmap/io/cloud/point_source.hpp"
 
 namespace agricolmap::io {
@@ -26,6 +29,7 @@ constexpr std::size_t kSampledChunks = 8;  // spread over the file: decoding all
 constexpr std::size_t kEnoughSamples = 100;
 /// From here on 32-bit floats are coarser than 0.8 cm.
 constexpr double kFarForFloat = 1e5;
+constexpr float kNoColour = std::numeric_limits<float>::quiet_NaN();
 
 /// The points of another source, brought into other coordinates.
 class MappedSource : public PointSource {
@@ -68,32 +72,24 @@ bool tellsPlace(const Eigen::Vector3d& point) {
   return within(point, kMaxCoordinate) && !point.isZero(0.0);
 }
 
-bool usableColour(const PointBlock& block, std::size_t i) {
-  return std::isfinite(block.wide[0][i]) && std::isfinite(block.wide[1][i]) &&
-         std::isfinite(block.wide[2][i]);
+/// The least and the largest channel of a wide colour; both NaN where it is not finite.
+std::pair<float, float> spanOf(const PointBlock& block, std::size_t i) {
+  const auto [least, most] = std::minmax({block.wide[0][i], block.wide[1][i], block.wide[2][i]});
+  const float sum = block.wide[0][i] + block.wide[1][i] + block.wide[2][i];
+  if (!std::isfinite(sum)) return {kNoColour, kNoColour};
+  return {least, most};
 }
-
-struct ColourRange {
-  float low = 0.0F;
-  float high = 0.0F;
-
-  void take(const PointBlock& block, std::size_t i) {
-    for (const auto& channel : block.wide) {
-      low = std::min(low, channel[i]);
-      high = std::max(high, channel[i]);
-    }
-  }
-  ColourRange& operator+=(const ColourRange& other) {
-    low = std::min(low, other.low);
-    high = std::max(high, other.high);
-    return *this;
-  }
-};
 
 /// A first look at a file.
 struct Samples {
   std::vector<Eigen::Vector3d> points;
-  ColourRange colours;  ///< of the points that tell a place, where colours are wide
+  ColourTally colours;  ///< of the points that tell a place, where colours are wide
+
+  LowestHeights heights() const {
+    LowestHeights lowest;
+    for (const Eigen::Vector3d& point : points) lowest.take(point.z());
+    return lowest;
+  }
 };
 
 /// Of every `step`-th chunk, of the points that tell a place every n-th, the first among them, so
@@ -108,7 +104,10 @@ Samples samplePoints(const PointSource& source, std::size_t step) {
       for (std::size_t i = 0; i < block.count; ++i) {
         const Eigen::Vector3d point = pointOf(block, i);
         if (!tellsPlace(point)) continue;
-        if (wide && usableColour(block, i)) parts[part].colours.take(block, i);
+        if (wide) {
+          const auto [least, most] = spanOf(block, i);
+          if (!std::isnan(least)) parts[part].colours.take(least, most);
+        }
         if (seen++ % stride == 0) parts[part].points.push_back(point);
       }
     });
@@ -163,16 +162,6 @@ void warnIfCoarse(const PointSource& source, Cloud& cloud) {
       cloud.name, far, 100.0F * step));
 }
 
-/// What wide colours of such values are multiplied by to be 0–255; nothing where they fit no range.
-std::optional<float> colourScale(ColourKind kind, const ColourRange& range) {
-  if (!isWide(kind)) return 1.0F;
-  if (range.low < 0.0F) return std::nullopt;
-  if (kind == ColourKind::kWideFloat && range.high <= 1.0F) return 255.0F;
-  if (range.high <= 255.0F) return 1.0F;
-  if (range.high <= 65535.0F) return 1.0F / 257.0F;
-  return std::nullopt;
-}
-
 Rgb narrow(const PointBlock& block, std::size_t i, float scale) {
   const auto byte = [&](std::size_t c) {
     return static_cast<std::uint8_t>(std::clamp(scale * block.wide[c][i] + 0.5F, 0.0F, 255.0F));
@@ -192,17 +181,33 @@ void resizeInHugePages(std::vector<T>& values, std::size_t size) {
   values.resize(size);
 }
 
+/// What is made of a file's points, decided by all of them.
+struct Reading {
+  ColourScale scale;
+  std::optional<double> hole;  ///< the height that stands for none
+
+  bool operator==(const Reading& other) const {
+    return scale.factor == other.scale.factor && hole == other.hole;
+  }
+};
+
 /// Points of one chunk, or of all.
 struct Tally {
   std::size_t kept = 0;
   std::size_t far = 0;  ///< that tell a place, but one too far from the origin
   std::size_t withheld = 0;
-  ColourRange colours;  ///< of what was kept, where colours are wide
+  std::size_t off_colour = 0;  ///< whose wide colours are outside the range of the others
+  std::size_t holes = 0;
+  ColourTally colours;    ///< of what can be used, where colours are wide
+  LowestHeights heights;  ///< of what tells a place
 
   Tally& operator+=(const Tally& other) {
     kept += other.kept;
     far += other.far;
     withheld += other.withheld;
+    off_colour += other.off_colour;
+    holes += other.holes;
+    heights += other.heights;
     colours += other.colours;
     return *this;
   }
@@ -230,7 +235,8 @@ void compact(const PointSource& source, const std::vector<Tally>& tallies, Cloud
 }
 
 /// Decodes a chunk to where its points belong when none before them is dropped.
-Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_scale, Cloud& cloud) {
+Tally decodeChunk(const PointSource& source, std::size_t chunk, const Reading& reading,
+                  Cloud& cloud) {
   const ColourKind kind = source.colourKind();
   const bool wide = isWide(kind);
   const std::size_t first = source.firstPoint(chunk);
@@ -244,24 +250,36 @@ Tally decodeChunk(const PointSource& source, std::size_t chunk, float colour_sca
         tally.far += tellsPlace(point) ? 1 : 0;
         continue;
       }
-      if (wide && !usableColour(block, i)) continue;
+      tally.heights.take(point.z());
+      if (reading.hole && point.z() == *reading.hole) {
+        ++tally.holes;
+        continue;
+      }
+      if (wide) {
+        const auto [least, most] = spanOf(block, i);
+        if (std::isnan(least)) continue;
+        tally.colours.take(least, most);
+        if (!reading.scale.holds(least, most)) {
+          ++tally.off_colour;
+          continue;
+        }
+      }
       const std::size_t next = first + tally.kept++;
       cloud.xyz[next] = local.cast<float>();
       if (kind == ColourKind::kByte) {
         cloud.rgb[next] = block.rgb[i];
       } else if (kind != ColourKind::kNone) {
-        cloud.rgb[next] = narrow(block, i, colour_scale);
-        tally.colours.take(block, i);
+        cloud.rgb[next] = narrow(block, i, reading.scale.factor);
       }
     }
   });
   return tally;
 }
 
-std::vector<Tally> decodeAll(const PointSource& source, float colour_scale, Cloud& cloud) {
+std::vector<Tally> decodeAll(const PointSource& source, const Reading& reading, Cloud& cloud) {
   std::vector<Tally> tallies(source.chunks());
   parallelFor(source.chunks(), [&](std::size_t chunk) {
-    tallies[chunk] = decodeChunk(source, chunk, colour_scale, cloud);
+    tallies[chunk] = decodeChunk(source, chunk, reading, cloud);
   });
   return tallies;
 }
@@ -290,11 +308,33 @@ void checkDropped(const PointSource& source, const Tally& tally, Cloud& cloud) {
     cloud.warnings.push_back(
         fmt::format("{}: {} points were left out: marked as withheld", cloud.name, tally.withheld));
   }
-  const std::size_t unusable = cloud.dropped_points - tally.withheld;
+  if (tally.off_colour > 0) {
+    cloud.warnings.push_back(fmt::format(
+        "{}: {} points were left out: colours outside the range that those of the others are in",
+        cloud.name, tally.off_colour));
+  }
+  if (tally.holes > 0) {
+    cloud.warnings.push_back(fmt::format(
+        "{}: {} points were left out: all at the height {}, far below the others, as holes are "
+        "written",
+        cloud.name, tally.holes, tally.heights.lowest));
+  }
+  const std::size_t unusable =
+      cloud.dropped_points - tally.withheld - tally.off_colour - tally.holes;
   if (unusable == 0) return;
   cloud.warnings.push_back(fmt::format(
       "{}: {} points were left out: NaN, infinite or more than {:.0f} km from the others",
       cloud.name, unusable, kMaxFromOrigin / 1000.0));
+}
+
+/// By what was seen of the points; nothing where their colours fit no range.
+std::optional<Reading> readingOf(ColourKind kind, const ColourTally& colours,
+                                 const LowestHeights& heights, const Samples& samples) {
+  const auto scale = isWide(kind) ? colours.scale(kind) : ColourScale{};
+  if (!scale) return std::nullopt;
+  std::vector<double> sampled;
+  for (const Eigen::Vector3d& point : samples.points) sampled.push_back(point.z());
+  return Reading{*scale, holeHeight(heights, std::move(sampled))};
 }
 
 }  // namespace
@@ -309,18 +349,23 @@ Cloud assembleCloud(const PointSource& source, const std::string& name, const Co
   const ColourKind kind = source.colourKind();
   resizeInHugePages(cloud.xyz, source.points());
   if (kind != ColourKind::kNone) resizeInHugePages(cloud.rgb, source.points());
-  // The largest colour is known when all points were seen, but the samples tell nearly always what
-  // it will be: a second pass is dear where points are compressed.
-  const float guessed = colourScale(kind, samples.colours).value_or(1.0F);
-  std::vector<Tally> tallies = decodeAll(source, guessed, cloud);
-  const Tally sum = sumOf(tallies);
-  const std::optional<float> scale = colourScale(kind, sum.colours);
-  if (!scale) {
+  // All points must be seen to know, but the samples tell nearly always what will come of it: a
+  // second pass is dear where points are compressed.
+  Reading reading =
+      readingOf(kind, samples.colours, samples.heights(), samples).value_or(Reading{});
+  std::vector<Tally> tallies = decodeAll(source, reading, cloud);
+  Tally sum = sumOf(tallies);
+  const auto better = readingOf(kind, sum.colours, sum.heights, samples);
+  if (!better) {
     throw InputError(
         fmt::format("{}: its colours go from {} to {}; known are 0..1 (float), 0..255 and 0..65535",
                     name, sum.colours.low, sum.colours.high));
   }
-  if (*scale != guessed) tallies = decodeAll(source, *scale, cloud);
+  if (!(*better == reading)) {
+    reading = *better;
+    tallies = decodeAll(source, reading, cloud);
+    sum = sumOf(tallies);
+  }
   compact(source, tallies, cloud);
   checkDropped(source, sum, cloud);
   return cloud;

@@ -4,24 +4,30 @@
 #include <array>
 #include <cctype>
 
+#include "agricolmap/io/cloud/xyz_columns.hpp"
 #include "agricolmap/io/las/las_header.hpp"
+#include "agricolmap/io/text/foreign_file.hpp"
 #include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
 namespace {
 
+constexpr std::size_t kFirstLines = 1U << 16;
+/// Those that are written; what ends like another's ending before that.
 constexpr std::array kFormats{CloudFormat::kPly, CloudFormat::kPcd, CloudFormat::kLas,
-                              CloudFormat::kLaz};
+                              CloudFormat::kCopc, CloudFormat::kLaz};
 
 bool looksLikePly(std::string_view text) {
-  return text.starts_with("ply\n") || text.starts_with("ply\r\n");
+  std::string_view line = takeLine(text, lineEndOf(text));
+  return takeWord(line) == "ply" && takeWord(line).empty();
 }
 
 /// The first line that is no comment tells.
 bool looksLikePcd(std::string_view text) {
   constexpr std::size_t kMaxLines = 100;
+  const char line_end = lineEndOf(text);
   for (std::size_t line = 0; line < kMaxLines && !text.empty(); ++line) {
-    std::string_view rest = takeLine(text);
+    std::string_view rest = takeLine(text, line_end);
     const std::string_view word = takeWord(rest);
     if (word.empty() || word.starts_with('#')) continue;
     return word == "VERSION" || word == "FIELDS" || word == "COLUMNS";
@@ -45,6 +51,10 @@ std::string endingOf(CloudFormat format) {
       return "las";
     case CloudFormat::kLaz:
       return "laz";
+    case CloudFormat::kXyz:
+      return "xyz";
+    case CloudFormat::kCopc:
+      return "copc.laz";
     case CloudFormat::kPly:
       break;
   }
@@ -52,21 +62,26 @@ std::string endingOf(CloudFormat format) {
 }
 
 std::optional<CloudFormat> formatByEnding(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  if (ending.empty()) return std::nullopt;
-  ending.erase(0, 1);  // the dot
-  std::transform(ending.begin(), ending.end(), ending.begin(),
+  std::string name = path.filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const CloudFormat format : kFormats) {
-    if (ending == endingOf(format)) return format;
+    const std::string ending = endingOf(format);
+    if (name.size() > ending.size() && name.ends_with(ending) &&
+        name[name.size() - ending.size() - 1] == '.') {
+      return format;
+    }
   }
   return std::nullopt;
 }
 
 std::optional<CloudFormat> formatByContent(std::string_view bytes) {
-  if (looksLikePly(bytes)) return CloudFormat::kPly;
-  if (looksLikePcd(bytes.substr(0, 1U << 16))) return CloudFormat::kPcd;
+  const std::string_view text = withoutMark(bytes).substr(0, kFirstLines);
+  if (looksLikePly(text)) return CloudFormat::kPly;
+  if (looksLikePcd(text)) return CloudFormat::kPcd;
   if (looksLikeLas(bytes)) return isCompressedLas(bytes) ? CloudFormat::kLaz : CloudFormat::kLas;
+  // Others have lines of numbers, too.
+  if (looksLikeXyz(text) && describeForeign(text).empty()) return CloudFormat::kXyz;
   return std::nullopt;
 }
 

@@ -8,13 +8,21 @@
 
 namespace agricolmap::io {
 
-enum class CloudFormat { kPly, kPcd, kLas, kLaz };
+enum class CloudFormat {
+  kPly,
+  kPcd,
+  kLas,
+  kLaz,
+  kCopc,
+  kXyz,  ///< lines of text; read, never written
+};
 
-/// "ply"
+/// "ply", "copc.laz"
 std::string endingOf(CloudFormat format);
-/// By the ending of a file's name, capitals or not; nothing where it is another.
+/// Of those that are written, by the ending of a file's name, capitals or not; nothing where it is
+/// another.
 std::optional<CloudFormat> formatByEnding(const std::filesystem::path& path);
-/// By the bytes of a file; nothing where it is no cloud.
+/// By the bytes of a file; nothing where it is no cloud. COPC is LAZ.
 std::optional<CloudFormat> formatByContent(std::string_view bytes);
 
 }  // namespace agricolmap::io

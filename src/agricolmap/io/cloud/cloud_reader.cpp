@@ -2,25 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/cloud/pcd_reader.hpp"
 #include "agricolmap/io/cloud/ply_reader.hpp"
+#include "agricolmap/io/cloud/xyz_reader.hpp"
 #include "agricolmap/io/las/las_reader.hpp"
+#include "agricolmap/io/text/foreign_file.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 
 namespace agricolmap::io {
 namespace {
 
-std::string_view remedyFor(std::string_view text) {
-  if (text.starts_with("II*") || text.starts_with("MM") || text.starts_with("II+")) {
-    return "it is a TIFF raster; orthophoto and surface model can be imported";
-  }
-  if (text.starts_with("\x89PNG")) return "it is a PNG picture";
-  if (text.starts_with("ply\r")) return "its lines end in CR alone; convert it with mac2unix";
-  return "known are PLY, PCD, LAS and LAZ";
+std::string remedyFor(std::string_view bytes) {
+  const std::string known = describeForeign(bytes);
+  if (!known.empty()) return known;
+  return "known are LAS, LAZ, PLY, PCD and text with lines 'x y z' or 'x y z r g b'";
 }
 
 }  // namespace
@@ -36,7 +36,10 @@ Cloud readCloud(const std::filesystem::path& path, const ReadOptions& options) {
         return readPcd(file, name, options);
       case CloudFormat::kLas:
       case CloudFormat::kLaz:
+      case CloudFormat::kCopc:
         return readLas(file, name, options);
+      case CloudFormat::kXyz:
+        return readXyz(file, name, options);
     }
   }
   throw InputError(fmt::format("{}: not a point cloud: {}", name, remedyFor(file.text())));

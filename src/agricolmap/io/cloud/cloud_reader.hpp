@@ -1,10 +1,10 @@
-// Reading point clouds: PLY (ascii, binary of either byte order), PCD 0.7 (ascii, binary,
-// binary_compressed) and LAS 1.0 to 1.5 with LAZ and COPC, told apart by content.
+// Reading point clouds: PLY (ascii, binary of either byte order), PCD 0.5 to 0.7 (ascii, binary,
+// binary_compressed), LAS 1.0 to 1.5 with LAZ and COPC, and lines of text, told apart by content.
 //
 // Coordinates x, y, z may have any numeric type. Colours are `red green blue`, `r g b` or
-// `diffuse_red …` in PLY, also packed `rgb`/`rgba` in PCD; 8 bit, 16 bit (÷257 unless no value
-// exceeds 255) or float 0–1. Other properties, lists and elements are skipped. The VIEWPOINT of PCD
-// is ignored: coordinates are taken as stored, as PCL's own viewers and filters do.
+// `diffuse_red …` in PLY, also packed `rgb`/`rgba` in PCD; 8 bit, 16 bit (÷257) or float 0–1, as
+// nearly all colours of the file tell. Other properties, lists and elements are skipped. The
+// VIEWPOINT of PCD is told, not applied: coordinates are taken as stored, as PCL's own filters do.
 #pragma once
 
 #include <filesystem>

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
@@ -106,11 +107,14 @@ void writeCloud(const OutputPath& path, const Cloud& cloud, CloudFormat format,
       return writePly(path, cloud, target_from_file);
     case CloudFormat::kPcd:
       return writePcd(path, cloud, target_from_file);
+    case CloudFormat::kXyz:
+      throw UsageError(fmt::format("{}: lines of text are read, never written", path.shown()));
     case CloudFormat::kLas:
     case CloudFormat::kLaz:
+    case CloudFormat::kCopc:
       break;
   }
-  writeLas(path, cloud, format == CloudFormat::kLaz, target_from_file);
+  writeLas(path, cloud, format, target_from_file);
 }
 
 }  // namespace agricolmap::io

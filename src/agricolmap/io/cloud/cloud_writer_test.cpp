@@ -67,7 +67,7 @@ TEST(CloudWriter, AllFormatsRoundTripInUtm) {
 
 TEST(CloudWriter, FormatsAreKnownByTheirEndings) {
   EXPECT_EQ(formatByEnding("a/b.LAZ"), CloudFormat::kLaz);
-  EXPECT_EQ(formatByEnding("b.copc.laz"), CloudFormat::kLaz);
+  EXPECT_EQ(formatByEnding("b.copc.laz"), CloudFormat::kCopc);
   EXPECT_EQ(formatByEnding("laz"), std::nullopt);
   EXPECT_EQ(formatByEnding("b.e57"), std::nullopt);
   EXPECT_EQ(formatByContent("LASF"), CloudFormat::kLas);

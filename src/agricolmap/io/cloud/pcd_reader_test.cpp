@@ -150,7 +150,7 @@ TEST(PcdReader, CatchesLyingHeaders) {
   expectRefused(with([](auto& p) { p.count = "COUNT 1 1 1 99999999999\n"; }), {"values a point"});
   expectRefused(with([](auto& p) { p.data = "zip"; }), {"'zip'"});
   expectRefused("VERSION 0.7\nFIELDS x\n", {"no DATA"});
-  expectRefused("VERSION 0.5\nDATA ascii\n", {"version"});
+  expectRefused("VERSION 0.4\nDATA ascii\n", {"version"});
   expectRefused(PcdParts{}.text() + "0 0 0 nan\n0 0 0 0\n", {"point 1", "binary"});
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMaxHeaderBytes = 1U << 20;
 
 std::optional<ScalarType> scalarType(std::string_view word) {
-  static constexpr std::array<std::pair<std::string_view, ScalarType>, 16> kNames{{
+  static constexpr std::array<std::pair<std::string_view, ScalarType>, 18> kNames{{
       {"char", ScalarType::kInt8},
       {"int8", ScalarType::kInt8},
       {"uchar", ScalarType::kUint8},
@@ -29,6 +29,8 @@ std::optional<ScalarType> scalarType(std::string_view word) {
       {"int32", ScalarType::kInt32},
       {"uint", ScalarType::kUint32},
       {"uint32", ScalarType::kUint32},
+      {"int64", ScalarType::kInt64},
+      {"uint64", ScalarType::kUint64},
       {"float", ScalarType::kFloat32},
       {"float32", ScalarType::kFloat32},
       {"double", ScalarType::kFloat64},
@@ -44,10 +46,13 @@ std::optional<ScalarType> scalarType(std::string_view word) {
 class Parser {
  public:
   Parser(std::string_view text, const std::string& name)
-      : text_(text), rest_(text.substr(0, kMaxHeaderBytes)), name_(name) {}
+      : text_(text), rest_(text.substr(0, kMaxHeaderBytes)), name_(name) {
+    header_.line_end = lineEndOf(text);
+  }
 
   PlyHeader parse() {
-    if (nextLine() != "ply") fail("a PLY file begins with a line 'ply'");
+    std::string_view first = nextLine();
+    if (takeWord(first) != "ply") fail("a PLY file begins with a line 'ply'");
     parseFormat();
     for (;;) {
       if (rest_.empty()) fail("the header has no 'end_header'");
@@ -70,7 +75,7 @@ class Parser {
  private:
   std::string_view nextLine() {
     ++line_;
-    return takeLine(rest_);
+    return takeLine(rest_, header_.line_end);
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -102,17 +107,23 @@ class Parser {
     if (!count || *count < 0) {
       fail(fmt::format("'{}' is no count of elements", words[1]));
     }
-    const auto same = [&](const PlyElement& e) { return e.name == words[0]; };
-    if (std::any_of(header_.elements.begin(), header_.elements.end(), same)) {
-      fail(fmt::format("element '{}' is there twice", words[0]));
-    }
+    if (isVertex(words[0]) && hasVertex()) fail("element 'vertex' is there twice");
     header_.elements.push_back({std::string(words[0]), static_cast<std::uint64_t>(*count), {}});
   }
 
+  bool hasVertex() const {
+    return std::any_of(header_.elements.begin(), header_.elements.end(),
+                       [](const PlyElement& e) { return isVertex(e.name); });
+  }
+
+  /// What stands behind the vertices is not read, and text needs no types: any will do there.
   ScalarType typeOrFail(std::string_view word) const {
-    const auto type = scalarType(word);
-    if (!type) fail(fmt::format("unknown type '{}'", word));
-    return *type;
+    if (const auto type = scalarType(word)) return *type;
+    const bool behind = hasVertex() && !isVertex(header_.elements.back().name);
+    if (!behind && header_.format != PlyFormat::kAscii) {
+      fail(fmt::format("unknown type '{}'", word));
+    }
+    return ScalarType::kFloat64;
   }
 
   void parseProperty(const std::vector<std::string_view>& words) {
@@ -126,14 +137,11 @@ class Parser {
     property.type = typeOrFail(words[list ? 2 : 0]);
     if (list) {
       property.list_count = typeOrFail(words[1]);
-      if (isFloating(*property.list_count)) fail("the length of a list cannot be a float");
+      if (scalarType(words[1]) && isFloating(*property.list_count)) {
+        fail("the length of a list cannot be a float");
+      }
     }
-    auto& properties = header_.elements.back().properties;
-    const auto same = [&](const PlyProperty& p) { return p.name == property.name; };
-    if (std::any_of(properties.begin(), properties.end(), same)) {
-      fail(fmt::format("property '{}' is there twice", property.name));
-    }
-    properties.push_back(std::move(property));
+    header_.elements.back().properties.push_back(std::move(property));
   }
 
   std::string_view text_;
@@ -144,6 +152,8 @@ class Parser {
 };
 
 }  // namespace
+
+bool isVertex(std::string_view element) { return lowerCase(element) == "vertex"; }
 
 bool PlyElement::hasLists() const {
   return std::any_of(properties.begin(), properties.end(),

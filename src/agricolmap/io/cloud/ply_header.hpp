@@ -33,9 +33,13 @@ struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
   std::size_t bytes = 0;  ///< length of the header: the data begin here
+  char line_end = '\n';   ///< of the header and, where it is text, of what follows
 };
 
-/// Throws InputError with file and line.
+/// Whether the name of an element is that of the points.
+bool isVertex(std::string_view element);
+
+/// Types that nobody needs may be unknown. Throws InputError with file and line.
 PlyHeader parsePlyHeader(std::string_view text, const std::string& name);
 
 }  // namespace agricolmap::io

@@ -20,16 +20,37 @@ constexpr std::array<Names, 3> kColourNames{
 /// Indices of three properties of the vertex.
 using Indices = std::array<std::size_t, 3>;
 
-std::optional<Indices> findAll(const PlyElement& vertex, const Names& names) {
+/// The property of this name, or, where there is none, of this name with capitals. Throws
+/// InputError when there are two.
+std::optional<std::size_t> findOne(const PlyElement& vertex, std::string_view name,
+                                   const std::string& file) {
+  std::optional<std::size_t> found;
+  for (const bool capitals : {false, true}) {
+    for (std::size_t i = 0; i < vertex.properties.size() && (!capitals || !found); ++i) {
+      const PlyProperty& p = vertex.properties[i];
+      if (p.list_count || (capitals ? lowerCase(p.name) : p.name) != name) continue;
+      if (found) throw InputError(fmt::format("{}: property '{}' is there twice", file, name));
+      found = i;
+    }
+  }
+  return found;
+}
+
+std::optional<Indices> findAll(const PlyElement& vertex, const Names& names,
+                               const std::string& file) {
   Indices indices{};
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto it =
-        std::find_if(vertex.properties.begin(), vertex.properties.end(),
-                     [&](const PlyProperty& p) { return p.name == names[c] && !p.list_count; });
-    if (it == vertex.properties.end()) return std::nullopt;
-    indices[c] = static_cast<std::size_t>(it - vertex.properties.begin());
+    const auto index = findOne(vertex, names[c], file);
+    if (!index) return std::nullopt;
+    indices[c] = *index;
   }
   return indices;
+}
+
+std::string fieldsOf(const PlyElement& vertex) {
+  std::vector<std::string> names;
+  for (const PlyProperty& property : vertex.properties) names.push_back(property.name);
+  return fieldList(names);
 }
 
 /// The vertex element and what its properties mean.
@@ -51,23 +72,26 @@ struct VertexLayout {
 VertexLayout vertexLayout(const PlyHeader& header, const std::string& name,
                           const ReadOptions& options) {
   const auto it = std::find_if(header.elements.begin(), header.elements.end(),
-                               [](const PlyElement& e) { return e.name == "vertex"; });
+                               [](const PlyElement& e) { return isVertex(e.name); });
   if (it == header.elements.end()) {
     throw InputError(fmt::format("{}: the header has no element 'vertex'", name));
   }
   VertexLayout layout;
   layout.vertex = &*it;
-  const auto xyz = findAll(*it, {"x", "y", "z"});
+  const auto xyz = findAll(*it, {"x", "y", "z"}, name);
   if (!xyz) {
-    throw InputError(fmt::format("{}: its vertices lack one of the properties x, y, z", name));
+    throw InputError(fmt::format(
+        "{}: its vertices lack one of the properties x, y, z (they have {})", name, fieldsOf(*it)));
   }
   if (it->count == 0) throw InputError(fmt::format("{}: empty cloud: 0 vertices", name));
   layout.xyz = *xyz;
   if (!options.colours) return layout;
   for (const Names& names : kColourNames) {
-    if (!layout.colour) layout.colour = findAll(*it, names);
+    if (!layout.colour) layout.colour = findAll(*it, names, name);
   }
-  const auto is_red = [](const PlyProperty& p) { return p.name == "red" || p.name == "green"; };
+  const auto is_red = [](const PlyProperty& p) {
+    return lowerCase(p.name) == "red" || lowerCase(p.name) == "green";
+  };
   layout.partly_coloured =
       !layout.colour && std::any_of(it->properties.begin(), it->properties.end(), is_red);
   return layout;
@@ -274,33 +298,38 @@ Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string
                 const std::string& name, const CoordinateMap* map) {
   for (const PlyElement* e = header.elements.data(); e != layout.vertex; ++e) {
     for (std::uint64_t i = 0; i < e->count && !e->properties.empty(); ++i) {
-      while (!text.empty() && splitWords(takeLine(text)).empty()) {
+      while (!text.empty() && splitWords(takeLine(text, header.line_end)).empty()) {
       }
       if (text.empty()) break;  // counted with the vertices' lines
     }
   }
-  const AsciiSource source(
-      {name, text, layout.vertex->count, asciiColumns(layout), layout.colourKind()});
+  const AsciiSource source({name, text, layout.vertex->count, asciiColumns(layout),
+                            layout.colourKind(), header.line_end, isLast(header, *layout.vertex)});
   Cloud cloud = assembleCloud(source, name, map);
-  if (layout.vertex == &header.elements.back()) warnOfRest(source.extraLines(), "lines", cloud);
+  if (isLast(header, *layout.vertex)) warnOfRest(source.extraLines(), "lines", cloud);
   return cloud;
 }
 
 }  // namespace
 
 Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
-  const PlyHeader header = parsePlyHeader(file.text(), name);
+  const std::string_view text = withoutMark(file.text());
+  const PlyHeader header = parsePlyHeader(text, name);
   const VertexLayout layout = vertexLayout(header, name, options);
-  Cloud cloud =
-      header.format == PlyFormat::kAscii
-          ? readAscii(header, layout, file.text().substr(header.bytes), name, options.map)
-          : readBinary(header, layout, file.bytes().subspan(header.bytes), name, options.map);
-  std::vector<std::string> names;
-  for (const PlyProperty& property : layout.vertex->properties) names.push_back(property.name);
-  cloud.fields = fieldList(names);
+  const std::string_view body = text.substr(header.bytes);
+  Cloud cloud = header.format == PlyFormat::kAscii
+                    ? readAscii(header, layout, body, name, options.map)
+                    : readBinary(header, layout, std::as_bytes(std::span(body)), name, options.map);
+  cloud.fields = fieldsOf(*layout.vertex);
   if (layout.partly_coloured) {
     cloud.warnings.push_back(fmt::format(
         "{}: its colours are incomplete (red, green and blue are needed); ignored", name));
+  }
+  if (!layout.colour && findOne(*layout.vertex, "f_dc_0", name)) {
+    cloud.warnings.push_back(fmt::format(
+        "{}: its points are Gaussian splats: their centres are not measured, and their colours "
+        "(f_dc_0 ...) are not read; take the coloured point cloud made from the same pictures",
+        name));
   }
   return cloud;
 }

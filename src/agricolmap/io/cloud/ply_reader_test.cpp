@@ -315,7 +315,7 @@ TEST(PlyReader, CatchesLyingHeaders) {
   expectRefused("", {"empty"});
   expectRefused("hello", {"not a point cloud"});
   expectRefused("LASF", {"truncated"});
-  expectRefused("ply\rformat ascii 1.0\r", {"mac2unix"});
+  expectRefused("ply\rformat ascii 1.0\r", {"end_header"});
 }
 
 TEST(PlyReader, CatchesLyingData) {

@@ -170,6 +170,8 @@ CommonFrame commonFrame(const FileCrs& fixed_file, const FileCrs& moving_file) {
   append(frame.warnings, moving_file.warnings);
   const FileCrs fixed = assumed(fixed_file, moving_file, frame.warnings);
   const FileCrs moving = assumed(moving_file, fixed_file, frame.warnings);
+  frame.fixed_file = fixed.crs;
+  frame.moving_file = moving.crs;
   if (!fixed.crs || !moving.crs) return frame;
   const bool by_fixed = isProjected(*fixed.crs);
   if (!by_fixed && !isProjected(*moving.crs)) {

@@ -28,9 +28,15 @@ struct FileCrs {
 /// when the cloud's file cannot be opened.
 FileCrs crsOf(const std::filesystem::path& cloud, const std::string& given = "");
 
+/// Of what a raster says; nothing where that is empty. Throws InputError when it is not understood.
+std::optional<Crs> crsFromWkt(const std::string& wkt);
+
 /// What brings two clouds into one coordinate system in metres.
 struct CommonFrame {
   Crs crs;  ///< empty where nobody said; units are metres
+  /// What the coordinates of the files themselves were taken to be in.
+  std::optional<Crs> fixed_file;
+  std::optional<Crs> moving_file;
   /// For ReadOptions; none where coordinates stay as they are.
   std::unique_ptr<CoordinateMap> fixed;
   std::unique_ptr<CoordinateMap> moving;

@@ -5,6 +5,7 @@
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/crs/srs.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
+#include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -60,11 +61,23 @@ void readLasCrs(const std::filesystem::path& path, FileCrs& found) {
   }
 }
 
+/// "WGS84 UTM 32N", as OpenDroneMap begins coords.txt, as a code; other texts as they are.
+std::string codeOf(const std::string& text) {
+  std::string_view rest = text;
+  const std::string_view line = takeLine(rest, lineEndOf(text));
+  constexpr std::string_view kBegin = "WGS84 UTM ";
+  if (!line.starts_with(kBegin) || line.size() < kBegin.size() + 2) return text;
+  const auto zone = parseInteger(line.substr(kBegin.size(), line.size() - kBegin.size() - 1));
+  const char side = line.back();
+  if (!zone || *zone < 1 || *zone > 60 || (side != 'N' && side != 'S')) return text;
+  return fmt::format("EPSG:{}", (side == 'N' ? 32600 : 32700) + *zone);
+}
+
 /// A definition, or the file that has it.
 Crs givenCrs(const std::string& given) {
   std::error_code ignored;
   const bool is_file = std::filesystem::is_regular_file(given, ignored);
-  const auto srs = srsFrom(is_file ? textOf(given) : given);
+  const auto srs = srsFrom(codeOf(is_file ? textOf(given) : given));
   if (!srs) {
     throw UsageError(
         fmt::format("'{}' is no coordinate system; known are codes as EPSG:32632, WKT, PROJ's text "
@@ -89,9 +102,27 @@ void readCrsBeside(const std::filesystem::path& cloud, FileCrs& found) {
     found.crs = crsFrom(*srs);
     return;
   }
+  for (const char* const odm : {"proj.txt", "coords.txt"}) {
+    const std::filesystem::path path = cloud.parent_path() / odm;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) continue;
+    found.warnings.push_back(fmt::format(
+        "{}: it does not say its coordinate system, and {} beside it is not asked; give it as the "
+        "coordinate system if it is of this file",
+        found.name, path.string()));
+    return;
+  }
 }
 
 }  // namespace
+
+std::optional<Crs> crsFromWkt(const std::string& wkt) {
+  if (wkt.empty()) return std::nullopt;
+  requireProjDatabase();
+  const auto srs = srsFrom(wkt);
+  if (!srs) throw InputError(fmt::format("the coordinate system {} cannot be understood", wkt));
+  return crsFrom(*srs);
+}
 
 FileCrs crsOf(const std::filesystem::path& cloud, const std::string& given) {
   FileCrs found;

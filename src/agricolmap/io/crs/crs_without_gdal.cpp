@@ -17,6 +17,8 @@ namespace {
 
 }  // namespace
 
+std::optional<Crs> crsFromWkt(const std::string& /*wkt*/) { return std::nullopt; }
+
 FileCrs crsOf(const std::filesystem::path& cloud, const std::string& given) {
   if (!given.empty()) refuse(given);
   FileCrs found;

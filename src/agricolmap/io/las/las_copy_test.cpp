@@ -64,6 +64,7 @@ class LasCopying : public ::testing::TestWithParam<bool> {
     if (GetParam()) GTEST_SKIP() << "built without LASzip";
 #endif
   }
+  static CloudFormat target() { return GetParam() ? CloudFormat::kLaz : CloudFormat::kLas; }
   TempDir folder_;
 };
 
@@ -71,7 +72,7 @@ TEST_P(LasCopying, KeepsAllAsItIs) {
   for (const int format : {1, 3, 7, 8}) {
     const LasBytes file = source(format);
     const auto path = folder_.write("in.las", file.bytes());
-    const LasCopied copied = copyLas(path, folder_ / "out", GetParam());
+    const CopiedCloud copied = copyLas(path, folder_ / "out", target());
     EXPECT_EQ(copied.points, 1000U);
     EXPECT_THAT(copied.warnings, ::testing::IsEmpty());
     const Contents in = contentsOf(path);
@@ -88,14 +89,14 @@ TEST_P(LasCopying, KeepsAllAsItIs) {
 TEST_P(LasCopying, MovesCoordinatesAndNothingElse) {
   const LasBytes file = source(3);
   const auto path = folder_.write("in.las", file.bytes());
-  LasMove move;
+  CloudMove move;
   move.target_from_file = Eigen::Affine3d(Eigen::Translation3d(100000.005, -4e6, 12.0) *
                                           Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
                                           Eigen::Scaling(Eigen::Vector3d(1.1, 0.9, 1.0)));
   const Cloud before = readCloud(path);
   move.origin = before.origin;
   move.crs = {"somewhere", "PROJCS[\"somewhere\"]"};
-  const LasCopied copied = copyLas(path, folder_ / "out", GetParam(), move);
+  const CopiedCloud copied = copyLas(path, folder_ / "out", target(), move);
   EXPECT_EQ(copied.points, 1000U);
   EXPECT_EQ(copied.left_out, 0U);
 
@@ -121,9 +122,24 @@ TEST_P(LasCopying, WavePacketsThatStayBehindAreSaid) {
   LasBytes file;
   file.format = 4;
   file.add(1, 2, 3);
-  const LasCopied copied =
-      copyLas(folder_.write("in.las", file.bytes()), folder_ / "out", GetParam());
+  const CopiedCloud copied =
+      copyLas(folder_.write("in.las", file.bytes()), folder_ / "out", target());
   EXPECT_THAT(copied.warnings, ::testing::ElementsAre(::testing::HasSubstr("wave packets")));
+}
+
+TEST_P(LasCopying, NormalsThatAreNotTurnedAreSaid) {
+  LasBytes file;
+  file.extra_bytes = 12;
+  std::string entry(192, '\0');
+  entry.replace(4, 7, "NormalX");
+  file.records.push_back(LasBytes::record("LASF_Spec", 4, entry));
+  file.add(1, 2, 3);
+  const auto path = folder_.write("in.las", file.bytes());
+  EXPECT_THAT(copyLas(path, folder_ / "out", target()).warnings, ::testing::IsEmpty());
+  CloudMove move;
+  move.origin = Eigen::Vector3d(file.offset[0], file.offset[1], file.offset[2]);
+  EXPECT_THAT(copyLas(path, folder_ / "out", target(), move).warnings,
+              ::testing::ElementsAre(::testing::HasSubstr("normals")));
 }
 
 TEST_P(LasCopying, WildPointsAreLeftOutAndStepsAreMetric) {
@@ -138,11 +154,11 @@ TEST_P(LasCopying, WildPointsAreLeftOutAndStepsAreMetric) {
     }
   };
   const Wild wild;
-  LasMove move;
+  CloudMove move;
   move.map = &wild;
   move.origin = Eigen::Vector3d(file.offset[0], file.offset[1], file.offset[2]);
-  const LasCopied copied =
-      copyLas(folder_.write("in.las", file.bytes()), folder_ / "out", GetParam(), move);
+  const CopiedCloud copied =
+      copyLas(folder_.write("in.las", file.bytes()), folder_ / "out", target(), move);
   EXPECT_EQ(copied.points, 1U);
   EXPECT_EQ(copied.left_out, 2U);
   EXPECT_EQ(contentsOf(folder_ / "out").header.scale.x(), 0.001);

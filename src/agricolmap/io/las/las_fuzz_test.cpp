@@ -33,7 +33,7 @@ std::vector<std::string> validFiles() {
     const LasBytes plain = points(format, format < 6 ? 2 : 4);
     LasOutline outline = lasOutline(true);
     outline.layout = plain.layout();
-    LasWriter writer(folder / "cloud.laz", outline, true);
+    LasWriter writer(folder / "cloud.laz", outline, LasWriter::Points::kLaz);
     for (const std::string& point : plain.points) {
       writer.write(reinterpret_cast<const std::byte*>(point.data()), 1);
     }

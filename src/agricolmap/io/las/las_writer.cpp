@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/las/laz_chunks.hpp"
 
 namespace agricolmap::io {
@@ -19,6 +20,9 @@ constexpr std::size_t kMostInRecord = 65535;
 constexpr std::uint16_t kWktFlag = 0x10;
 constexpr std::uint16_t kWaveFlags = 0x06;  ///< wave packets within the file, or beside it
 constexpr std::uint16_t kWkt = 2112;
+constexpr std::size_t kChunk = 50000;  ///< points of a chunk of LAZ, as LASzip's own
+/// Chunks that are compressed side by side, and so wait in memory.
+constexpr std::size_t kTogether = 8;
 
 std::size_t headerSize(int minor) { return minor >= 4 ? 375 : minor == 3 ? 235 : 227; }
 
@@ -110,55 +114,118 @@ LasOutline lasOutline(bool colours) {
   return outline;
 }
 
-LasWriter::LasWriter(const OutputPath& path, LasOutline outline, bool compressed)
-    : outline_(std::move(outline)), compressed_(compressed), sink_(path) {
-  if (compressed_) {
-    outline_.records.push_back(
-        {kLazUser, kLazRecord, "http://laszip.org", lazRecord(outline_.layout), false});
+LasTally::LasTally() {
+  low.fill(std::numeric_limits<std::int32_t>::max());
+  high.fill(std::numeric_limits<std::int32_t>::min());
+}
+
+void LasTally::add(const std::byte* records, std::size_t count, const LasLayout& layout) {
+  const unsigned mask = layout.extended ? 0x0FU : 0x07U;
+  std::array<std::uint64_t, 16> returns{};
+  for (std::size_t i = 0; i < count; ++i, records += layout.length) {
+    ++returns[std::to_integer<unsigned>(records[14]) & mask];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto value = loadLe<std::int32_t>(records + 4 * axis);
+      low[axis] = std::min(low[axis], value);
+      high[axis] = std::max(high[axis], value);
+    }
   }
-  low_.fill(std::numeric_limits<std::int32_t>::max());
-  high_.fill(std::numeric_limits<std::int32_t>::min());
+  points += count;
+  for (std::size_t i = 0; i < by_return.size(); ++i) by_return[i] += returns[i + 1];
+}
+
+LasTally& LasTally::operator+=(const LasTally& other) {
+  points += other.points;
+  for (std::size_t i = 0; i < by_return.size(); ++i) by_return[i] += other.by_return[i];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = std::min(low[axis], other.low[axis]);
+    high[axis] = std::max(high[axis], other.high[axis]);
+  }
+  return *this;
+}
+
+LasWriter::LasWriter(const OutputPath& path, LasOutline outline, Points kind)
+    : outline_(std::move(outline)), kind_(kind), sink_(path) {
+  if (kind_ != Points::kPlain) {
+    outline_.records.push_back({kLazUser, kLazRecord, "http://laszip.org",
+                                lazRecord(outline_.layout, kind_ == Points::kChunks), false});
+  }
   const bool behind = std::any_of(outline_.records.begin(), outline_.records.end(), standsBehind);
   if (behind) outline_.minor = std::max(outline_.minor, 4);
   sink_.write(head());
-  if (compressed_) encoder_ = lazEncoder(sink_, outline_.layout);
-}
-
-LasWriter::~LasWriter() = default;
-
-void LasWriter::count(const std::byte* record) {
-  const auto returns = std::to_integer<unsigned>(record[14]);
-  const unsigned number = outline_.layout.extended ? returns & 0x0FU : returns & 0x07U;
-  if (number > 0) ++by_return_[number - 1];
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto value = loadLe<std::int32_t>(record + 4 * axis);
-    low_[axis] = std::min(low_[axis], value);
-    high_[axis] = std::max(high_[axis], value);
-  }
+  points_begin_ = sink_.size();
+  // Where the chunk table is, once it is known.
+  if (kind_ != Points::kPlain) sink_.write(std::array<std::byte, 8>{});
 }
 
 void LasWriter::write(const std::byte* records, std::size_t count) {
-  const std::size_t length = outline_.layout.length;
-  for (std::size_t i = 0; i < count; ++i) this->count(records + i * length);
-  points_ += count;
-  if (encoder_) {
-    encoder_->write(records, count);
+  LasTally tally;
+  tally.add(records, count, outline_.layout);
+  write(records, count, tally);
+}
+
+void LasWriter::write(const std::byte* records, std::size_t count, const LasTally& tally) {
+  tally_ += tally;
+  const std::span bytes(records, count * outline_.layout.length);
+  if (kind_ == Points::kPlain) {
+    sink_.write(bytes);
     return;
   }
-  sink_.write(std::span(records, count * length));
+  append(pending_, bytes);
+  compressPending(false);
+}
+
+void LasWriter::compressPending(bool all) {
+  const std::size_t length = outline_.layout.length;
+  const std::size_t points = pending_.size() / length;
+  const std::size_t chunks = all ? (points + kChunk - 1) / kChunk : points / kChunk;
+  if (chunks == 0 || (!all && chunks < kTogether)) return;
+  std::vector<std::vector<std::byte>> compressed(chunks);
+  const auto countOf = [&](std::size_t i) { return std::min(kChunk, points - i * kChunk); };
+  parallelFor(chunks, [&](std::size_t i) {
+    compressed[i] = lazChunk(&pending_[i * kChunk * length], countOf(i), outline_.layout);
+  });
+  for (std::size_t i = 0; i < chunks; ++i) {
+    sink_.write(compressed[i]);
+    chunks_.push_back(
+        {static_cast<std::uint32_t>(countOf(i)), static_cast<std::uint32_t>(compressed[i].size())});
+  }
+  const std::size_t used = std::min(points, chunks * kChunk) * length;
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(used));
+}
+
+std::uint64_t LasWriter::writeChunk(std::span<const std::byte> chunk, const LasTally& tally) {
+  tally_ += tally;
+  const std::uint64_t begin = sink_.size();
+  sink_.write(chunk);
+  chunks_.push_back(
+      {static_cast<std::uint32_t>(tally.points), static_cast<std::uint32_t>(chunk.size())});
+  return begin;
+}
+
+std::uint64_t LasWriter::endPoints() {
+  if (kind_ != Points::kPlain && !ended_) {
+    compressPending(true);
+    std::array<std::byte, 8> at{};
+    storeLe(at.data(), static_cast<std::uint64_t>(sink_.size()));
+    sink_.write(lazChunkTable(chunks_, kind_ == Points::kChunks));
+    sink_.rewrite(points_begin_, at);
+  }
+  ended_ = true;
+  return sink_.size();
 }
 
 void LasWriter::close() {
-  if (encoder_) encoder_->close();
-  if (points_ > 0xFFFFFFFFU && outline_.minor < 4) {
-    throw OutputError(fmt::format("LAS 1.{} has no room for {} points", outline_.minor, points_));
+  const std::uint64_t end = endPoints();
+  if (points() > 0xFFFFFFFFU && outline_.minor < 4) {
+    throw OutputError(fmt::format("LAS 1.{} has no room for {} points", outline_.minor, points()));
   }
   std::vector<std::byte> behind;
   for (const LasOwnRecord& record : outline_.records) {
     if (standsBehind(record)) appendRecord(record, behind);
   }
   if (!behind.empty()) {
-    extended_begin_ = sink_.size();
+    extended_begin_ = end;
     sink_.write(behind);
   }
   sink_.rewrite(0, head());
@@ -189,27 +256,28 @@ std::vector<std::byte> LasWriter::head() const {
   storeLe(to + 94, static_cast<std::uint16_t>(size));
   storeLe(to + 96, static_cast<std::uint32_t>(size + records.size()));
   storeLe(to + 100, before);
-  to[104] = static_cast<std::byte>(outline_.layout.format | (compressed_ ? 0x80 : 0));
+  to[104] = static_cast<std::byte>(outline_.layout.format | (kind_ != Points::kPlain ? 0x80 : 0));
   storeLe(to + 105, static_cast<std::uint16_t>(outline_.layout.length));
-  const bool legacy = !outline_.layout.extended && points_ <= 0xFFFFFFFFU;
-  if (legacy) storeLe(to + 107, static_cast<std::uint32_t>(points_));
+  const bool legacy = !outline_.layout.extended && points() <= 0xFFFFFFFFU;
+  if (legacy) storeLe(to + 107, static_cast<std::uint32_t>(points()));
   for (std::size_t i = 0; i < 5 && legacy; ++i) {
-    storeLe(to + 111 + 4 * i, static_cast<std::uint32_t>(by_return_[i]));
+    storeLe(to + 111 + 4 * i, static_cast<std::uint32_t>(tally_.by_return[i]));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<Eigen::Index>(axis);
     storeLe(to + 131 + 8 * axis, outline_.scale[i]);
     storeLe(to + 155 + 8 * axis, outline_.offset[i]);
-    if (points_ == 0) continue;
-    const double a = outline_.scale[i] * low_[axis] + outline_.offset[i];
-    const double b = outline_.scale[i] * high_[axis] + outline_.offset[i];
+    if (points() == 0) continue;
+    const double a = outline_.scale[i] * tally_.low[axis] + outline_.offset[i];
+    const double b = outline_.scale[i] * tally_.high[axis] + outline_.offset[i];
     storeLe(to + 179 + 16 * axis, std::max(a, b));
     storeLe(to + 187 + 16 * axis, std::min(a, b));
   }
   storeLe(to + 235, extended_begin_);
   storeLe(to + 243, behind);
-  storeLe(to + 247, points_);
-  for (std::size_t i = 0; i < by_return_.size(); ++i) storeLe(to + 255 + 8 * i, by_return_[i]);
+  storeLe(to + 247, points());
+  for (std::size_t i = 0; i < tally_.by_return.size(); ++i)
+    storeLe(to + 255 + 8 * i, tally_.by_return[i]);
 
   std::vector<std::byte> bytes(head.begin(), head.begin() + static_cast<std::ptrdiff_t>(size));
   append(bytes, records);

@@ -4,11 +4,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "agricolmap/io/las/las_header.hpp"
+#include "agricolmap/io/las/laz_chunk_table.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 
 namespace agricolmap::io {
@@ -50,50 +51,68 @@ LasOutline lasOutline(std::span<const std::byte> bytes, const LasHeader& header)
 /// For points that are nothing but coordinates and perhaps colours.
 LasOutline lasOutline(bool colours);
 
+/// What a header says of all points together.
+struct LasTally {
+  std::uint64_t points = 0;
+  std::array<std::uint64_t, 15> by_return{};
+  std::array<std::int32_t, 3> low{};
+  std::array<std::int32_t, 3> high{};
+
+  LasTally();
+  void add(const std::byte* records, std::size_t count, const LasLayout& layout);
+  LasTally& operator+=(const LasTally& other);
+};
+
 /// Takes records and puts them behind a header that is right in the end. Throws OutputError.
 class LasWriter {
  public:
+  enum class Points {
+    kPlain,
+    kLaz,     ///< in chunks of 50 000, compressed side by side
+    kChunks,  ///< LAZ, in the chunks that are handed over
+  };
+
   /// Throws UsageError for LAZ in a build without LASzip.
-  LasWriter(const OutputPath& path, LasOutline outline, bool compressed);
-  ~LasWriter();
+  LasWriter(const OutputPath& path, LasOutline outline, Points kind);
   LasWriter(const LasWriter&) = delete;
   LasWriter& operator=(const LasWriter&) = delete;
 
-  /// `count` records of the outline's layout.
+  /// `count` records of the outline's layout; `tally` is theirs.
+  void write(const std::byte* records, std::size_t count, const LasTally& tally);
   void write(const std::byte* records, std::size_t count);
+  /// A chunk as lazChunk makes it, for Points::kChunks; returns where in the file it begins.
+  std::uint64_t writeChunk(std::span<const std::byte> chunk, const LasTally& tally);
+  /// Nothing but extended records comes behind it; returns where these begin.
+  std::uint64_t endPoints();
   /// Must be called last.
   void close();
-  std::uint64_t points() const { return points_; }
 
-  /// How points are compressed.
-  class Encoder {
-   public:
-    virtual ~Encoder() = default;
-    virtual void write(const std::byte* records, std::size_t count) = 0;
-    /// Writes what is left; no point follows.
-    virtual void close() = 0;
-  };
+  /// Records may be changed, but not in size, and extended ones added until `close`.
+  LasOutline& outline() { return outline_; }
+  const LasTally& tally() const { return tally_; }
+  std::uint64_t points() const { return tally_.points; }
 
  private:
   std::vector<std::byte> head() const;
-  void count(const std::byte* record);
+  void compressPending(bool all);
 
   LasOutline outline_;
-  bool compressed_;
+  Points kind_;
   FileSink sink_;
-  std::unique_ptr<Encoder> encoder_;
+  std::vector<std::byte> pending_;    ///< records that make no chunk yet
+  std::vector<LazChunkSize> chunks_;  ///< written so far
+  std::size_t points_begin_ = 0;
+  bool ended_ = false;
   std::uint64_t extended_begin_ = 0;  ///< of the extended records, once known
-  std::uint64_t points_ = 0;
-  std::array<std::uint64_t, 15> by_return_{};
-  std::array<std::int32_t, 3> low_{};
-  std::array<std::int32_t, 3> high_{};
+  LasTally tally_;
 };
 
-/// LASzip's record for points of this layout: what a LAZ file says of its compression.
-std::vector<std::byte> lazRecord(const LasLayout& layout);
+/// LASzip's record for points of this layout: what a LAZ file says of its compression. `variable`:
+/// its chunks have any number of points.
+std::vector<std::byte> lazRecord(const LasLayout& layout, bool variable);
 
-/// Compresses into `sink`, behind what was written to it. Both from laz_writer.cpp or, in a
-/// build without LASzip, without_laszip.cpp, where they throw UsageError.
-std::unique_ptr<LasWriter::Encoder> lazEncoder(FileSink& sink, const LasLayout& layout);
+/// Records compressed as one chunk. From several threads at once.
+std::vector<std::byte> lazChunk(const std::byte* records, std::size_t count,
+                                const LasLayout& layout);
 
 }  // namespace agricolmap::io

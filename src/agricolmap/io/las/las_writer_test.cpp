@@ -52,7 +52,8 @@ class LasWriting : public ::testing::TestWithParam<bool> {
 #endif
   }
   std::filesystem::path write(const LasOutline& outline, const std::string& records) {
-    LasWriter writer(folder_ / "out.las", outline, GetParam());
+    LasWriter writer(folder_ / "out.las", outline,
+                     GetParam() ? LasWriter::Points::kLaz : LasWriter::Points::kPlain);
     const std::size_t length = outline.layout.length;
     writer.write(reinterpret_cast<const std::byte*>(records.data()), records.size() / length);
     writer.close();
@@ -133,7 +134,8 @@ TEST_P(LasWriting, FullDisksAreErrors) {
   const std::string records = randomRecords(outline.layout, 100000, random);
   test::expectError<OutputError>(
       [&] {
-        LasWriter writer(std::filesystem::path("/dev/full"), outline, GetParam());
+        LasWriter writer(std::filesystem::path("/dev/full"), outline,
+                         GetParam() ? LasWriter::Points::kLaz : LasWriter::Points::kPlain);
         writer.write(reinterpret_cast<const std::byte*>(records.data()), 100000);
         writer.close();
       },

@@ -1,30 +1,33 @@
 #include "agricolmap/io/las/laz_integers.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <utility>
 
 namespace agricolmap::io {
 namespace {
 
 constexpr std::uint32_t kShortestInterval = 1U << 24;
-constexpr std::uint32_t kSymbolBits = 15;
-constexpr std::uint32_t kBitBits = 13;
 /// Errors have up to 32 bits, of which the upper eight are modelled and the others are not.
-constexpr std::size_t kErrorBits = 32;
+constexpr std::uint32_t kErrorBits = 32;
 constexpr std::uint32_t kModelledBits = 8;
+/// More bits than that are coded in two parts.
+constexpr std::uint32_t kMostBits = 19;
+constexpr std::uint32_t kLowerBits = 16;
 
 }  // namespace
 
-LazIntegers::Symbols::Symbols(std::size_t count)
+LazSymbols::LazSymbols(std::size_t count)
     : counts_(count, 1), starts_(count, 0), cycle_(static_cast<std::uint32_t>(count)) {
   update();
   cycle_ = (static_cast<std::uint32_t>(count) + 6) / 2;
   until_update_ = cycle_;
 }
 
-void LazIntegers::Symbols::update() {
+void LazSymbols::update() {
   const auto count = static_cast<std::uint32_t>(counts_.size());
   total_ += cycle_;
-  if (total_ > 1U << kSymbolBits) {
+  if (total_ > 1U << kBits) {
     total_ = 0;
     for (std::uint32_t& n : counts_) {
       n = (n + 1) / 2;
@@ -34,65 +37,77 @@ void LazIntegers::Symbols::update() {
   const std::uint32_t scale = 0x80000000U / total_;
   std::uint32_t sum = 0;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    starts_[i] = (scale * sum) >> (31 - kSymbolBits);
+    starts_[i] = (scale * sum) >> (31 - kBits);
     sum += counts_[i];
   }
   cycle_ = std::min(5 * cycle_ / 4, (count + 6) * 8);
   until_update_ = cycle_;
 }
 
-std::size_t LazIntegers::Symbols::decode(LazIntegers& decoder) {
-  const std::uint32_t whole = decoder.length_;
-  const std::uint32_t unit = whole >> kSymbolBits;
-  // The last symbol that does not start behind the value.
-  const auto it = std::upper_bound(
-      starts_.begin() + 1, starts_.end(), decoder.value_,
-      [&](std::uint32_t value, std::uint32_t start) { return value < start * unit; });
-  const auto symbol = static_cast<std::size_t>(it - starts_.begin()) - 1;
-  const std::uint32_t begin = starts_[symbol] * unit;
-  const std::uint32_t end = it == starts_.end() ? whole : *it * unit;
-  decoder.value_ -= begin;
-  decoder.length_ = end - begin;
-  decoder.renormalise();
+void LazSymbols::count(std::size_t symbol) {
   ++counts_[symbol];
   if (--until_update_ == 0) update();
-  return symbol;
 }
 
-std::uint32_t LazIntegers::Bit::decode(LazIntegers& decoder) {
-  const std::uint32_t split = start_of_one_ * (decoder.length_ >> kBitBits);
-  const std::uint32_t bit = decoder.value_ >= split ? 1 : 0;
-  if (bit == 0) {
-    decoder.length_ = split;
-    ++zeros_;
-  } else {
-    decoder.value_ -= split;
-    decoder.length_ -= split;
-  }
-  decoder.renormalise();
-  if (--until_update_ == 0) update();
-  return bit;
-}
-
-void LazIntegers::Bit::update() {
+void LazBit::update() {
   total_ += cycle_;
-  if (total_ > 1U << kBitBits) {
+  if (total_ > 1U << kBits) {
     total_ = (total_ + 1) / 2;
     zeros_ = (zeros_ + 1) / 2;
     if (zeros_ == total_) ++total_;
   }
   const std::uint32_t scale = 0x80000000U / total_;
-  start_of_one_ = (zeros_ * scale) >> (31 - kBitBits);
+  start_of_one_ = (zeros_ * scale) >> (31 - kBits);
   cycle_ = std::min(5 * cycle_ / 4, std::uint32_t{64});
   until_update_ = cycle_;
 }
 
-LazIntegers::LazIntegers(std::span<const std::byte> bytes)
-    : bytes_(bytes), sizes_{Symbols(kErrorBits + 1), Symbols(kErrorBits + 1)} {
+void LazBit::count(std::uint32_t bit) {
+  if (bit == 0) ++zeros_;
+  if (--until_update_ == 0) update();
+}
+
+LazIntegerModels::LazIntegerModels()
+    : sizes{LazSymbols(kErrorBits + 1), LazSymbols(kErrorBits + 1)} {
   for (std::uint32_t bits = 1; bits < kErrorBits; ++bits) {
-    errors_.emplace_back(std::size_t{1} << std::min(bits, kModelledBits));
+    errors.emplace_back(std::size_t{1} << std::min(bits, kModelledBits));
   }
+}
+
+LazIntegers::LazIntegers(std::span<const std::byte> bytes) : bytes_(bytes) {
   for (int i = 0; i < 4; ++i) value_ = value_ << 8 | takeByte();
+}
+
+std::size_t LazIntegers::decode(LazSymbols& symbols) {
+  const std::vector<std::uint32_t>& starts = symbols.starts();
+  const std::uint32_t whole = length_;
+  const std::uint32_t unit = whole >> LazSymbols::kBits;
+  // The last symbol that does not start behind the value.
+  const auto it = std::upper_bound(
+      starts.begin() + 1, starts.end(), value_,
+      [&](std::uint32_t value, std::uint32_t start) { return value < start * unit; });
+  const auto symbol = static_cast<std::size_t>(it - starts.begin()) - 1;
+  const std::uint32_t begin = starts[symbol] * unit;
+  const std::uint32_t end = it == starts.end() ? whole : *it * unit;
+  value_ -= begin;
+  length_ = end - begin;
+  renormalise();
+  symbols.count(symbol);
+  return symbol;
+}
+
+std::uint32_t LazIntegers::decode(LazBit& model) {
+  const std::uint32_t split = model.startOfOne() * (length_ >> LazBit::kBits);
+  const std::uint32_t bit = value_ >= split ? 1 : 0;
+  if (bit == 0) {
+    length_ = split;
+  } else {
+    value_ -= split;
+    length_ -= split;
+  }
+  renormalise();
+  model.count(bit);
+  return bit;
 }
 
 std::uint32_t LazIntegers::takeByte() {
@@ -116,10 +131,9 @@ void LazIntegers::renormalise() {
 }
 
 std::uint32_t LazIntegers::decodeBits(std::uint32_t count) {
-  constexpr std::uint32_t kMost = 19;
-  if (count > kMost) {
-    const std::uint32_t lower = decodeBits(16);
-    return decodeBits(count - 16) << 16 | lower;
+  if (count > kMostBits) {
+    const std::uint32_t lower = decodeBits(kLowerBits);
+    return decodeBits(count - kLowerBits) << kLowerBits | lower;
   }
   length_ >>= count;
   const std::uint32_t bits = value_ / length_;
@@ -129,10 +143,10 @@ std::uint32_t LazIntegers::decodeBits(std::uint32_t count) {
 }
 
 std::uint32_t LazIntegers::next(std::uint32_t predicted, std::size_t stream) {
-  const auto size = static_cast<std::uint32_t>(sizes_[stream].decode(*this));
-  if (size == 0) return predicted + small_error_.decode(*this);
+  const auto size = static_cast<std::uint32_t>(decode(models_.sizes[stream]));
+  if (size == 0) return predicted + decode(models_.small_error);
   if (size == kErrorBits) return predicted + 0x80000000U;  // the least integer, and it alone
-  auto error = static_cast<std::uint32_t>(errors_[size - 1].decode(*this));
+  auto error = static_cast<std::uint32_t>(decode(models_.errors[size - 1]));
   if (size > kModelledBits) {
     const std::uint32_t lower_bits = size - kModelledBits;
     error = error << lower_bits | decodeBits(lower_bits);
@@ -141,6 +155,82 @@ std::uint32_t LazIntegers::next(std::uint32_t predicted, std::size_t stream) {
   // negative and end at -2^(size-1).
   const std::uint32_t half = 1U << (size - 1);
   return predicted + (error >= half ? error + 1 : error - ((1U << size) - 1));
+}
+
+void LazIntegersWriter::moveBase(std::uint32_t by) {
+  const std::uint32_t before = base_;
+  base_ += by;
+  if (base_ >= before) return;
+  // The carry goes on to the bytes that were put down already.
+  std::size_t i = bytes_.size();
+  while (i > 0 && bytes_[i - 1] == std::byte{0xFF}) bytes_[--i] = std::byte{0};
+  if (i > 0) bytes_[i - 1] = static_cast<std::byte>(std::to_integer<unsigned>(bytes_[i - 1]) + 1);
+}
+
+void LazIntegersWriter::renormalise() {
+  while (length_ < kShortestInterval) {
+    bytes_.push_back(static_cast<std::byte>(base_ >> 24));
+    base_ <<= 8;
+    length_ <<= 8;
+  }
+}
+
+void LazIntegersWriter::encode(LazSymbols& symbols, std::size_t symbol) {
+  const std::vector<std::uint32_t>& starts = symbols.starts();
+  const std::uint32_t unit = length_ >> LazSymbols::kBits;
+  const std::uint32_t begin = starts[symbol] * unit;
+  const std::uint32_t end = symbol + 1 == starts.size() ? length_ : starts[symbol + 1] * unit;
+  moveBase(begin);
+  length_ = end - begin;
+  renormalise();
+  symbols.count(symbol);
+}
+
+void LazIntegersWriter::encode(LazBit& model, std::uint32_t bit) {
+  const std::uint32_t split = model.startOfOne() * (length_ >> LazBit::kBits);
+  if (bit == 0) {
+    length_ = split;
+  } else {
+    moveBase(split);
+    length_ -= split;
+  }
+  renormalise();
+  model.count(bit);
+}
+
+void LazIntegersWriter::encodeBits(std::uint32_t bits, std::uint32_t count) {
+  if (count > kMostBits) {
+    encodeBits(bits & ((1U << kLowerBits) - 1), kLowerBits);
+    encodeBits(bits >> kLowerBits, count - kLowerBits);
+    return;
+  }
+  length_ >>= count;
+  moveBase(bits * length_);
+  renormalise();
+}
+
+void LazIntegersWriter::put(std::uint32_t value, std::uint32_t predicted, std::size_t stream) {
+  const std::uint32_t difference = value - predicted;
+  const bool positive = difference != 0 && difference < 0x80000000U;
+  const auto size =
+      static_cast<std::uint32_t>(std::bit_width(positive ? difference - 1 : 0U - difference));
+  encode(models_.sizes[stream], size);
+  if (size == 0) return encode(models_.small_error, difference);
+  if (size == kErrorBits) return;
+  const std::uint32_t error = positive ? difference - 1 : difference + ((1U << size) - 1);
+  const std::uint32_t lower_bits = size > kModelledBits ? size - kModelledBits : 0;
+  encode(models_.errors[size - 1], error >> lower_bits);
+  if (lower_bits > 0) encodeBits(error & ((1U << lower_bits) - 1), lower_bits);
+}
+
+std::vector<std::byte> LazIntegersWriter::finish() {
+  // Bytes enough that whatever follows them lies within the interval.
+  const bool wide = length_ > 2 * kShortestInterval;
+  moveBase(wide ? kShortestInterval : kShortestInterval >> 1);
+  length_ = wide ? kShortestInterval >> 1 : kShortestInterval >> 9;
+  renormalise();
+  bytes_.resize(bytes_.size() + (wide ? 3 : 2));
+  return std::move(bytes_);
 }
 
 }  // namespace agricolmap::io

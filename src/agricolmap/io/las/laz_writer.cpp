@@ -1,10 +1,9 @@
-// LAZ by LASzip, which writes points alone: header and records are the LasWriter's.
+// LAZ by LASzip, which compresses one chunk at a time: all else of the file is the LasWriter's.
 #include <laszip/laszip_api.h>
 
-#include <algorithm>
-#include <exception>
-#include <ostream>
-#include <streambuf>
+#include <sstream>
+#include <string>
+#include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/las/las_writer.hpp"
@@ -13,76 +12,11 @@ namespace agricolmap::io {
 namespace {
 
 constexpr std::size_t kRecordHeader = 54;
+constexpr std::size_t kPointer = 8;
+constexpr std::size_t kChunkSize = 12;  ///< where LASzip's record has it
+constexpr std::uint32_t kVariable = 0xFFFFFFFFU;
 
-/// A file that goes on behind what was written to it. LASzip goes back once, for 8 bytes.
-class SinkBuffer : public std::streambuf {
- public:
-  explicit SinkBuffer(FileSink& sink)
-      : sink_(sink), buffer_(std::size_t{1} << 20), at_(sink.size()) {}
-
-  /// Why the file could not be written: LASzip takes what is thrown through it for an error of its
-  /// own.
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
-  void flush() {
-    sink_.write(std::span<const std::byte>(buffer_).first(used_));
-    used_ = 0;
-  }
-
- protected:
-  std::streamsize xsputn(const char* text, std::streamsize count) override {
-    const auto bytes = std::as_bytes(std::span(text, static_cast<std::size_t>(count)));
-    try {
-      if (at_ == end()) {
-        append(bytes);
-      } else {
-        flush();
-        sink_.rewrite(at_, bytes);
-      }
-    } catch (...) {
-      failure_ = std::current_exception();
-      throw;
-    }
-    at_ += bytes.size();
-    return count;
-  }
-  int_type overflow(int_type c) override {
-    const char byte = traits_type::to_char_type(c);
-    xsputn(&byte, 1);
-    return c;
-  }
-  pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override {
-    const std::size_t base = from == std::ios_base::beg   ? 0
-                             : from == std::ios_base::cur ? at_
-                                                          : end();
-    at_ = static_cast<std::size_t>(static_cast<off_type>(base) + offset);
-    return pos_type(static_cast<off_type>(at_));
-  }
-  pos_type seekpos(pos_type to, std::ios_base::openmode which) override {
-    return seekoff(off_type(to), std::ios_base::beg, which);
-  }
-
- private:
-  std::size_t end() const { return sink_.size() + used_; }
-  void append(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      if (used_ == buffer_.size()) flush();
-      const std::size_t part = std::min(bytes.size(), buffer_.size() - used_);
-      std::copy_n(bytes.begin(), part, buffer_.begin() + static_cast<std::ptrdiff_t>(used_));
-      used_ += part;
-      bytes = bytes.subspan(part);
-    }
-  }
-  FileSink& sink_;
-  std::vector<std::byte> buffer_;
-  std::size_t used_ = 0;
-  std::size_t at_;  ///< where the next byte goes
-  std::exception_ptr failure_;
-};
-
-/// LASzip's writer, freed. Throws OutputError.
+/// LASzip's writer, freed.
 class Writer {
  public:
   explicit Writer(const LasLayout& layout) {
@@ -154,51 +88,38 @@ void loadRecord(const std::byte* from, const LasLayout& layout, laszip_point& po
   }
 }
 
-class Laz : public LasWriter::Encoder {
- public:
-  Laz(FileSink& sink, const LasLayout& layout)
-      : layout_(layout), buffer_(sink), stream_(&buffer_), writer_(layout) {
-    stream_.exceptions(std::ios::badbit);  // what is thrown goes on to LASzip
-    check(laszip_open_writer_stream(writer_.get(), stream_, 1, 1));
-    check(laszip_get_point_pointer(writer_.get(), &point_));
-  }
-  void write(const std::byte* records, std::size_t count) override {
-    for (std::size_t i = 0; i < count; ++i) {
-      loadRecord(records + i * layout_.length, layout_, *point_);
-      check(laszip_write_point(writer_.get()));
-    }
-  }
-  void close() override {
-    check(laszip_close_writer(writer_.get()));
-    buffer_.flush();
-  }
-
- private:
-  void check(laszip_I32 failed) const {
-    if (failed != 0) buffer_.rethrow();
-    writer_.check(failed);
-  }
-
-  LasLayout layout_;
-  SinkBuffer buffer_;
-  std::ostream stream_;
-  Writer writer_;
-  laszip_point* point_ = nullptr;
-};
-
 }  // namespace
 
-std::vector<std::byte> lazRecord(const LasLayout& layout) {
+std::vector<std::byte> lazRecord(const LasLayout& layout, bool variable) {
   const Writer writer(layout);
   laszip_U8* bytes = nullptr;
   laszip_U32 size = 0;
   writer.check(laszip_create_laszip_vlr(writer.get(), &bytes, &size));
   const auto all = std::as_bytes(std::span(bytes, size)).subspan(kRecordHeader);
-  return {all.begin(), all.end()};
+  std::vector<std::byte> record(all.begin(), all.end());
+  if (variable) storeLe(&record.at(kChunkSize), kVariable);
+  return record;
 }
 
-std::unique_ptr<LasWriter::Encoder> lazEncoder(FileSink& sink, const LasLayout& layout) {
-  return std::make_unique<Laz>(sink, layout);
+std::vector<std::byte> lazChunk(const std::byte* records, std::size_t count,
+                                const LasLayout& layout) {
+  std::ostringstream stream;
+  const Writer writer(layout);
+  writer.check(laszip_set_chunk_size(writer.get(), static_cast<laszip_U32>(count)));
+  writer.check(laszip_open_writer_stream(writer.get(), stream, 1, 1));
+  laszip_point* point = nullptr;
+  writer.check(laszip_get_point_pointer(writer.get(), &point));
+  for (std::size_t i = 0; i < count; ++i) {
+    loadRecord(records + i * layout.length, layout, *point);
+    writer.check(laszip_write_point(writer.get()));
+  }
+  writer.check(laszip_close_writer(writer.get()));
+  // A file of this chunk alone: where its table of chunks is, the chunk, the table.
+  const std::string file = std::move(stream).str();
+  const auto bytes = std::as_bytes(std::span(file));
+  const auto table = static_cast<std::size_t>(loadLe<std::int64_t>(bytes.data()));
+  const auto chunk = bytes.subspan(kPointer, table - kPointer);
+  return {chunk.begin(), chunk.end()};
 }
 
 }  // namespace agricolmap::io

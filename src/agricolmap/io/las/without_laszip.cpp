@@ -15,15 +15,19 @@ std::unique_ptr<LasPoints> lazPoints(std::span<const std::byte> /*bytes*/,
       name));
 }
 
-std::vector<std::byte> lazRecord(const LasLayout& /*layout*/) {
+std::vector<std::byte> lazRecord(const LasLayout& /*layout*/, bool /*variable*/) {
   throw UsageError(
-      "writing LAZ needs LASzip, and this build has none; build it with liblaszip-dev "
+      "writing LAZ and COPC needs LASzip, and this build has none; build it with liblaszip-dev "
       "(scripts/install-dependencies), or write LAS");
 }
 
-std::unique_ptr<LasWriter::Encoder> lazEncoder(FileSink& /*sink*/, const LasLayout& layout) {
-  lazRecord(layout);
-  return nullptr;
+std::vector<std::byte> lazChunk(const std::byte* /*records*/, std::size_t /*count*/,
+                                const LasLayout& layout) {
+  return lazRecord(layout, false);
+}
+
+std::vector<std::byte> lazChunkTable(std::span<const LazChunkSize> /*chunks*/, bool variable) {
+  return lazRecord({}, variable);
 }
 
 }  // namespace agricolmap::io

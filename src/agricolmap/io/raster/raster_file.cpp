@@ -15,6 +15,9 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/robust.hpp"
+#include "agricolmap/io/crs/srs.hpp"
+#include "agricolmap/io/raster/raster_bands.hpp"
+#include "agricolmap/io/text/foreign_file.hpp"
 
 namespace agricolmap::io {
 
@@ -25,15 +28,7 @@ constexpr int kStripRows = 256;
 constexpr double kWhitePercentile = 0.995;
 constexpr std::size_t kSampleSize = 1U << 20;
 
-using Bands = std::array<GDALRasterBand*, 3>;  ///< red, green, blue
-
-/// Keeps GDAL from printing; its last message goes into ours.
-struct QuietGdal {
-  QuietGdal() { CPLPushErrorHandler(CPLQuietErrorHandler); }
-  ~QuietGdal() { CPLPopErrorHandler(); }
-  QuietGdal(const QuietGdal&) = delete;
-  QuietGdal& operator=(const QuietGdal&) = delete;
-};
+using Bands = ColourBands;
 
 [[noreturn]] void fail(const std::string& name, std::string_view what) {
   const std::string reason = CPLGetLastErrorMsg();
@@ -51,7 +46,14 @@ GDALDatasetUniquePtr openRaster(const std::filesystem::path& path) {
   CPLErrorReset();
   GDALDatasetUniquePtr dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, options));
-  if (!dataset) fail(path.string(), "cannot be read as a raster");
+  if (!dataset) {
+    const std::string foreign = describeForeignFile(path);
+    const bool raster = looksLikeRaster(path);
+    if (!raster && !foreign.empty()) {
+      throw InputError(fmt::format("{}: is no raster: {}", path.string(), foreign));
+    }
+    fail(path.string(), "cannot be read as a raster");
+  }
   if (dataset->GetRasterCount() == 0) {
     throw InputError(fmt::format("{}: has no bands of its own", path.string()));
   }
@@ -130,55 +132,29 @@ void readBand(GDALRasterBand& band, const Section& section, GDALDataType type, v
   }
 }
 
-Bands colourBands(GDALDataset& dataset, BandOrder order, const std::string& name) {
-  const int count = dataset.GetRasterCount();
-  if (dataset.GetRasterBand(1)->GetColorInterpretation() == GCI_PaletteIndex) {
-    throw InputError(
-        fmt::format("{}: has a colour palette; convert it with gdal_translate -expand rgb", name));
-  }
-  if (count < 3) {
-    throw InputError(
-        fmt::format("{}: has {} band(s), so no colours; an orthomosaic needs red, green and blue",
-                    name, count));
-  }
-  if (order == BandOrder::kAuto) {
-    Bands bands{};
-    for (int i = 1; i <= count; ++i) {
-      const int channel = dataset.GetRasterBand(i)->GetColorInterpretation() - GCI_RedBand;
-      if (channel < 0 || channel > 2) continue;
-      auto& band = bands[static_cast<std::size_t>(channel)];
-      if (band == nullptr) band = dataset.GetRasterBand(i);
-    }
-    if (std::none_of(bands.begin(), bands.end(), [](auto* b) { return b == nullptr; }))
-      return bands;
-    order = BandOrder::kRgb;
-  }
-  static constexpr std::array<std::string_view, 7> kOrders{"rgb", "rgb", "rbg", "grb",
-                                                           "gbr", "brg", "bgr"};
-  const std::string_view letters = kOrders[static_cast<std::size_t>(order)];
-  const auto band = [&](char letter) {
-    return dataset.GetRasterBand(static_cast<int>(letters.find(letter)) + 1);
-  };
-  return {band('r'), band('g'), band('b')};
-}
-
 /// Marks what alpha or the file's mask leaves out; false when it has neither.
 bool applyMask(GDALDataset& dataset, const Section& section, GDALRasterBand& first,
                RasterImage& image) {
-  GDALRasterBand* mask = nullptr;
-  int least = 1;
-  for (int i = 1; i <= dataset.GetRasterCount() && mask == nullptr; ++i) {
-    GDALRasterBand* const band = dataset.GetRasterBand(i);
-    if (band->GetColorInterpretation() == GCI_AlphaBand) mask = band;
+  GDALRasterBand* const alpha = alphaBandOf(dataset);
+  const bool has_mask = (first.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == GMF_PER_DATASET;
+  if (alpha == nullptr && !has_mask) return false;
+  if (has_mask) {
+    readBand(*first.GetMaskBand(), section, GDT_Byte, image.valid.data(), 1, image.name);
+  } else {
+    Raster<float> values(image.valid.rows(), image.valid.cols());
+    readBand(*alpha, section, GDT_Float32, values.data(), sizeof(float), image.name);
+    auto mask = maskFromAlpha(values);
+    if (!mask) {
+      image.warnings.push_back(fmt::format(
+          "{}: band {} is called transparency, but its values are data's; it takes nothing away",
+          image.name, alpha->GetBand()));
+      return false;
+    }
+    image.valid = *std::move(mask);
   }
-  if (mask != nullptr) {
-    least = 128;
-  } else if ((first.GetMaskFlags() & GMF_PER_DATASET) != 0) {
-    mask = first.GetMaskBand();
-  }
-  if (mask == nullptr) return false;
-  readBand(*mask, section, GDT_Byte, image.valid.data(), 1, image.name);
-  for (std::uint8_t& value : image.valid) value = value >= least ? 1 : 0;
+  for (std::uint8_t& value : image.valid) value = value != 0 ? 1 : 0;
+  image.transparent =
+      static_cast<std::size_t>(std::count(image.valid.begin(), image.valid.end(), 0));
   return true;
 }
 
@@ -257,6 +233,8 @@ void readWide(const Bands& bands, const Section& section, const NoData& nodata,
 
 }  // namespace
 
+void silenceGdal() { CPLSetErrorHandler(CPLQuietErrorHandler); }
+
 RasterShape readRasterShape(const std::filesystem::path& path) {
   const QuietGdal quiet;
   const GDALDatasetUniquePtr dataset = openRaster(path);
@@ -271,7 +249,7 @@ RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& o
   RasterImage image;
   image.name = path.string();
   image.place = placeOf(*dataset);
-  const Bands bands = colourBands(*dataset, options.bands, image.name);
+  const Bands bands = colourBandsOf(*dataset, options.bands, image.name);
   const Section section = sectionOf(*dataset, part, image.name);
   moveTo(section, image.place);
   image.colour = Raster<Rgb>(section.rows, section.cols);
@@ -307,6 +285,7 @@ RasterHeights readHeights(const std::filesystem::path& path, const RasterPart& p
   heights.height = Raster<float>(section.rows, section.cols);
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   readBand(band, section, GDT_Float32, heights.height.data(), sizeof(float), heights.name);
+  const double unit = heightUnitOf(*dataset, band, heights.name, heights.warnings);
   const double scale = band.GetScale();
   const double shift = band.GetOffset();
   int has_nodata = 0;
@@ -316,11 +295,16 @@ RasterHeights readHeights(const std::filesystem::path& path, const RasterPart& p
     if (!std::isfinite(height) || (has_nodata != 0 && height == nodata)) {
       height = std::numeric_limits<float>::quiet_NaN();
     } else {
-      height = static_cast<float>(scale * static_cast<double>(height) + shift);
+      height = static_cast<float>(unit * (scale * static_cast<double>(height) + shift));
       ++valid;
     }
   }
   if (valid == 0) throw InputError(fmt::format("{}: no pixel has a height", heights.name));
+  refusePictureAsHeights(*dataset, heights.height, heights.name);
+  if (unit != 1.0) {
+    heights.warnings.push_back(
+        fmt::format("{}: its heights are in units of {} m; brought to metres", heights.name, unit));
+  }
   return heights;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/options.hpp"
@@ -54,18 +55,24 @@ struct RasterPlace {
 
 /// A colour picture. Unlike grid maps, row 0 is the file's first: its top, north in most.
 struct RasterImage {
-  std::string name;            ///< file it came from
-  Raster<Rgb> colour;          ///< means nothing where not valid
-  Raster<std::uint8_t> valid;  ///< 1 where the picture has data
+  std::string name;             ///< file it came from
+  Raster<Rgb> colour;           ///< means nothing where not valid
+  Raster<std::uint8_t> valid;   ///< 1 where the picture has data
+  std::size_t transparent = 0;  ///< pixels that transparency or the file's mask takes away
   RasterPlace place;
+  std::vector<std::string> warnings;
 };
 
 /// A surface or terrain model, rows as in the file.
 struct RasterHeights {
   std::string name;
-  Raster<float> height;  ///< [m]; NaN where there is none
+  Raster<float> height;  ///< [m], whatever the file's unit; NaN where there is none
   RasterPlace place;
+  std::vector<std::string> warnings;
 };
+
+/// Whether a file begins as TIFF, PNG, JPEG or GDAL's VRT do; false when it cannot be read.
+bool looksLikeRaster(const std::filesystem::path& path);
 
 /// Size and place of a raster, without reading its pixels.
 struct RasterShape {
@@ -75,22 +82,29 @@ struct RasterShape {
   RasterPlace place;
 };
 
+/// Keeps GDAL from printing in all threads of the process, those that it starts itself included.
+/// For programs: a library leaves the process alone.
+void silenceGdal();
+
 /// Throws InputError when the file is no raster.
 RasterShape readRasterShape(const std::filesystem::path& path);
 
 /// Reads a colour raster, or a part of one: place and pixels are then the part's. No data is where
-/// alpha is below one half, the file's mask says so, all three bands have their nodata value, a
-/// value is not finite or, where the file declares none of these and `black_is_nodata` is on,
-/// black. Values of more than 8 bits are scaled by one factor for all bands, so that the 99.5th
-/// percentile becomes 255, unless none exceeds 255 (integers). Throws InputError when the file is
-/// no raster, has no colours, does not contain the window, or nothing is valid.
+/// alpha is below half of its largest value, the file's mask says so, all three bands have their
+/// nodata value, a value is not finite or, where the file declares none of these and
+/// `black_is_nodata` is on, black. Values of more than 8 bits are scaled by one factor for all
+/// bands, so that the 99.5th percentile becomes 255, unless none exceeds 255 (integers). Throws
+/// InputError when the file is no raster, has no colours, does not contain the window, or nothing
+/// is valid.
 RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& options = {},
                        const RasterPart& part = {});
 
-/// Reads the first band, or a part of it, as heights. Throws InputError.
+/// Reads the first band, or a part of it, as heights, which its unit, scale and offset bring to
+/// metres. Throws InputError, also where the values are a picture's.
 RasterHeights readHeights(const std::filesystem::path& path, const RasterPart& part = {});
 
-/// Replaces heights farther than `max_height` from the median by NaN: nodata that is not declared.
-void removeFarHeights(Raster<float>& heights, double max_height);
+/// Replaces heights farther than `max_height` from the median by NaN, and those at one value far
+/// below all others: nodata that is not declared. How many these were.
+std::size_t removeFarHeights(Raster<float>& heights, double max_height);
 
 }  // namespace agricolmap::io

@@ -11,6 +11,7 @@
 #include "agricolmap/core/bilinear.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/raster/raster_place.hpp"
 
 namespace agricolmap::io {
@@ -68,7 +69,53 @@ Raster<float> sampleAll(const RasterImage& ortho, const RasterHeights& dsm, int 
   return heights;
 }
 
-Cloud toCloud(const RasterImage& ortho, const Raster<float>& heights, int step) {
+/// Heights of a map without a surface model.
+Raster<float> flatHeights(const RasterImage& ortho, int step) {
+  Raster<float> heights((ortho.colour.rows() + step - 1) / step,
+                        (ortho.colour.cols() + step - 1) / step, kNone);
+  for (int row = 0; row < heights.rows(); ++row) {
+    for (int col = 0; col < heights.cols(); ++col) {
+      if (ortho.valid(row * step, col * step) != 0) heights(row, col) = 0.0F;
+    }
+  }
+  return heights;
+}
+
+/// The points of one row, in the cloud's coordinates.
+struct RowPoints {
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<double> z;
+  std::vector<Rgb> rgb;
+};
+
+RowPoints rowPoints(const RasterImage& ortho, const Raster<float>& heights, int step, int row,
+                    const CoordinateMap* map) {
+  RowPoints points;
+  for (int col = 0; col < heights.cols(); ++col) {
+    const float height = heights(row, col);
+    if (std::isnan(height)) continue;
+    const Eigen::Vector2d at =
+        *ortho.place.world_from_pixel * Eigen::Vector2d(col * step + 0.5, row * step + 0.5);
+    points.x.push_back(at.x());
+    points.y.push_back(at.y());
+    points.z.push_back(static_cast<double>(height));
+    points.rgb.push_back(ortho.colour(row * step, col * step));
+  }
+  if (map != nullptr) {
+    map->apply(points.x.data(), points.y.data(), points.z.data(), points.x.size());
+  }
+  const auto lost = [](double x) { return !std::isfinite(x); };
+  if (std::any_of(points.x.begin(), points.x.end(), lost)) {
+    throw InputError(fmt::format(
+        "{}: some of its pixels have no place in the coordinate system of the other map",
+        ortho.name));
+  }
+  return points;
+}
+
+Cloud toCloud(const RasterImage& ortho, const Raster<float>& heights, int step,
+              const CoordinateMap* map) {
   const auto rows = static_cast<std::size_t>(heights.rows());
   std::vector<std::size_t> first(rows + 1, 0);
   std::vector<std::size_t> coloured(rows, 0);
@@ -88,52 +135,94 @@ Cloud toCloud(const RasterImage& ortho, const Raster<float>& heights, int step) 
   cloud.name = ortho.name;
   cloud.dropped_points = pixels - first[rows];
   if (first[rows] == 0) return cloud;
-  const Eigen::Affine2d& world_from_pixel = *ortho.place.world_from_pixel;
-  const Eigen::Vector2d corner = world_from_pixel * Eigen::Vector2d(0.5, 0.5);
-  const float z = *std::find_if(heights.begin(), heights.end(),
-                                [](float height) { return !std::isnan(height); });
-  cloud.origin = {std::round(corner.x()), std::round(corner.y()),
-                  std::round(static_cast<double>(z))};
+  const auto begin = std::find_if(first.begin(), first.end(), [](auto n) { return n > 0; });
+  const RowPoints any =
+      rowPoints(ortho, heights, step, static_cast<int>(begin - first.begin()) - 1, map);
+  cloud.origin = {std::round(any.x[0]), std::round(any.y[0]), std::round(any.z[0])};
   cloud.xyz.resize(first[rows]);
   cloud.rgb.resize(first[rows]);
   parallelFor(rows, [&](std::size_t row) {
-    std::size_t next = first[row];
-    for (int col = 0; col < heights.cols(); ++col) {
-      const int r = static_cast<int>(row);
-      const float height = heights(r, col);
-      if (std::isnan(height)) continue;
-      const Eigen::Vector2d at =
-          world_from_pixel * Eigen::Vector2d(col * step + 0.5, r * step + 0.5);
-      cloud.xyz[next] =
-          (Eigen::Vector3d(at.x(), at.y(), static_cast<double>(height)) - cloud.origin)
-              .cast<float>();
-      cloud.rgb[next] = ortho.colour(r * step, col * step);
-      ++next;
+    const RowPoints points = rowPoints(ortho, heights, step, static_cast<int>(row), map);
+    for (std::size_t i = 0; i < points.x.size(); ++i) {
+      cloud.xyz[first[row] + i] =
+          (Eigen::Vector3d(points.x[i], points.y[i], points.z[i]) - cloud.origin).cast<float>();
+      cloud.rgb[first[row] + i] = points.rgb[i];
     }
   });
   return cloud;
 }
 
-}  // namespace
+void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
 
-Cloud importOrthoDsm(const std::filesystem::path& ortho, const std::filesystem::path& dsm,
-                     const ImportOptions& options) {
-  checkOptions(options);
-  const RasterImage image = readRaster(ortho, options.raster);
-  const RasterHeights model = readHeights(dsm);
-  checkMetres(image.name, image.place);
-  checkMetres(model.name, model.place);
-  const auto warning = checkSameCrs(image.name, image.place, model.name, model.place);
+/// Heights at the kept pixels, by the surface model.
+Raster<float> modelHeights(const RasterImage& image, const std::filesystem::path& dsm,
+                           const ImportOptions& options, std::vector<std::string>& warnings) {
+  RasterHeights model = readHeights(dsm);
+  checkGeoreference(model.name, model.place);
+  if (const auto warning = checkSameCrs(image.name, image.place, model.name, model.place)) {
+    warnings.push_back(*warning);
+  }
+  append(warnings, model.warnings);
+  // Before anything is interpolated: a hole would reach into the pixels beside it.
+  const std::size_t removed = removeFarHeights(model.height, options.max_height);
+  if (removed > 0) {
+    warnings.push_back(
+        fmt::format("{}: {} heights were left out: farther than {} m from their median, or all at "
+                    "one value far "
+                    "below the others",
+                    model.name, removed, options.max_height));
+  }
   Raster<float> heights = sampleAll(image, model, options.step);
-  removeFarHeights(heights, options.max_height);
-  Cloud cloud = toCloud(image, heights, options.step);
-  if (cloud.empty()) {
+  if (std::all_of(heights.begin(), heights.end(), [](float z) { return std::isnan(z); })) {
     throw InputError(
         fmt::format("no pixel of {} ({}) has a height in {} ({}); do the two show the same field?",
                     image.name, extentOf(image.place, image.colour.rows(), image.colour.cols()),
                     model.name, extentOf(model.place, model.height.rows(), model.height.cols())));
   }
-  if (warning) cloud.warnings.push_back(*warning);
+  return heights;
+}
+
+}  // namespace
+
+Cloud importOrtho(const std::filesystem::path& ortho,
+                  const std::optional<std::filesystem::path>& dsm, const ImportOptions& options,
+                  const CoordinateMap* map) {
+  checkOptions(options);
+  const RasterImage image = readRaster(ortho, options.raster);
+  checkGeoreference(image.name, image.place);
+  std::vector<std::string> warnings = image.warnings;
+  if (image.transparent > 0) {
+    warnings.push_back(fmt::format("{}: {} of its {} pixels are transparent, and left out",
+                                   image.name, image.transparent, image.valid.size()));
+  }
+  if (!dsm) {
+    warnings.push_back(fmt::format(
+        "{}: without a surface model it is laid flat, and heights mean nothing; give ORTHO,DSM",
+        image.name));
+  }
+  const Raster<float> heights =
+      dsm ? modelHeights(image, *dsm, options, warnings) : flatHeights(image, options.step);
+  Cloud cloud = toCloud(image, heights, options.step, map);
+  append(cloud.warnings, warnings);
+  cloud.fields = dsm ? "red, green, blue, height" : "red, green, blue";
+  return cloud;
+}
+
+Cloud importOrthoDsm(const std::filesystem::path& ortho,
+                     const std::optional<std::filesystem::path>& dsm,
+                     const ImportOptions& options) {
+  checkOptions(options);
+  const RasterShape shape = readRasterShape(ortho);
+  checkMetres(shape.name, shape.place);
+  if (dsm) {
+    const RasterShape model = readRasterShape(*dsm);
+    checkMetres(model.name, model.place);
+  }
+  Cloud cloud = importOrtho(ortho, dsm, options);
+  if (const auto crs = crsFromWkt(shape.place.crs)) cloud.crs = *crs;
+  cloud.crs.vertical_unit = 1.0;
   return cloud;
 }
 

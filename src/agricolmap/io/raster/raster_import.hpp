@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/io/cloud/read_options.hpp"
 #include "agricolmap/io/raster/raster_file.hpp"
 
 namespace agricolmap::io {
@@ -16,14 +18,21 @@ struct ImportOptions {
 };
 void listOptions(OptionTable& table, ImportOptions& options);
 
-/// One point per valid pixel of the orthomosaic, at the pixel's centre, in its projected
-/// coordinates, with the surface model's height there (bilinear; the model may have another
-/// resolution, extent and rotation). Pixels without a height, or with one farther than `max_height`
-/// from the median (nodata that is not declared), are dropped and counted.
+/// One point per valid pixel of the orthomosaic, at the pixel's centre, in its own coordinates,
+/// brought elsewhere by `map` if there is one, with the surface model's height there (bilinear; the
+/// model may have another resolution, extent and rotation), or 0 without a model, which is a
+/// warning. Pixels without a height, or with one farther than `max_height` from the median (nodata
+/// that is not declared), are dropped and counted; those that transparency takes away are told.
 ///
-/// Throws InputError when a file is not georeferenced, in degrees or other units than metres, both
-/// have different coordinate systems, they do not overlap, or the orthomosaic has no colours.
-Cloud importOrthoDsm(const std::filesystem::path& ortho, const std::filesystem::path& dsm,
+/// Throws InputError when a file is not georeferenced, both have different coordinate systems, they
+/// do not overlap, or the orthomosaic has no colours.
+Cloud importOrtho(const std::filesystem::path& ortho,
+                  const std::optional<std::filesystem::path>& dsm,
+                  const ImportOptions& options = {}, const CoordinateMap* map = nullptr);
+
+/// The same of rasters in projected metres; others are refused.
+Cloud importOrthoDsm(const std::filesystem::path& ortho,
+                     const std::optional<std::filesystem::path>& dsm,
                      const ImportOptions& options = {});
 
 }  // namespace agricolmap::io

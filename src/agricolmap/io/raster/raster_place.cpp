@@ -25,7 +25,7 @@ OGRSpatialReference horizontalCrs(const RasterPlace& place, const std::string& n
 
 }  // namespace
 
-void checkMetres(const std::string& name, const RasterPlace& place) {
+void checkGeoreference(const std::string& name, const RasterPlace& place) {
   if (!place.world_from_pixel) {
     throw InputError(fmt::format(
         "{}: is not georeferenced; give it its place with gdal_translate -a_ullr and -a_srs",
@@ -34,6 +34,10 @@ void checkMetres(const std::string& name, const RasterPlace& place) {
   if (std::abs(place.world_from_pixel->linear().determinant()) <= 0.0) {
     throw InputError(fmt::format("{}: its georeference is degenerate", name));
   }
+}
+
+void checkMetres(const std::string& name, const RasterPlace& place) {
+  checkGeoreference(name, place);
   if (place.crs.empty()) return;
   requireProjDatabase();
   const OGRSpatialReference crs = horizontalCrs(place, name);

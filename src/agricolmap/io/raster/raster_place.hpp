@@ -8,6 +8,9 @@
 
 namespace agricolmap::io {
 
+/// Throws InputError unless the raster `name` says where it lies.
+void checkGeoreference(const std::string& name, const RasterPlace& place);
+
 /// Throws InputError unless the raster `name` is georeferenced in metres.
 void checkMetres(const std::string& name, const RasterPlace& place);
 

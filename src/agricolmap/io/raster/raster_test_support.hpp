@@ -30,13 +30,22 @@ struct Sheet {
   };
   std::string driver = "GTiff";
   bool georeferenced = true;
+  std::string crs = {};                 ///< instead of `epsg`, as EPSG:32618+6360
+  std::string unit = {};                ///< of all bands
+  std::vector<std::string> names = {};  ///< of the bands
+  const char* compress = "NONE";        ///< of GeoTIFF
+  bool undeclared = false;              ///< nothing is said of what the bands are
 };
 
 inline std::filesystem::path writeSheet(const std::filesystem::path& path, const Sheet& sheet) {
   GDALAllRegister();
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(sheet.driver.c_str());
-  const GDALDatasetUniquePtr dataset(
-      driver->Create(path.c_str(), sheet.cols, sheet.rows, sheet.bands, sheet.type, nullptr));
+  const std::string compress = std::string("COMPRESS=") + sheet.compress;
+  const char* const options[] = {compress.c_str(), nullptr};
+  const bool tiff = sheet.driver == "GTiff";
+  const GDALDatasetUniquePtr dataset(driver->Create(path.c_str(), sheet.cols, sheet.rows,
+                                                    sheet.bands, sheet.type,
+                                                    tiff ? const_cast<char**>(options) : nullptr));
   if (!dataset) throw OutputError("GDAL cannot write " + path.string());
   if (sheet.georeferenced) {
     std::array<double, 6> place = sheet.place;
@@ -44,11 +53,16 @@ inline std::filesystem::path writeSheet(const std::filesystem::path& path, const
   }
   if (sheet.epsg != 0) {
     OGRSpatialReference crs;
-    crs.importFromEPSG(sheet.epsg);
+    crs.SetFromUserInput(
+        (sheet.crs.empty() ? "EPSG:" + std::to_string(sheet.epsg) : sheet.crs).c_str());
     dataset->SetSpatialRef(&crs);
   }
   for (int b = 0; b < sheet.bands; ++b) {
     GDALRasterBand* const band = dataset->GetRasterBand(b + 1);
+    const auto at = static_cast<std::size_t>(b);
+    if (!sheet.unit.empty()) band->SetUnitType(sheet.unit.c_str());
+    if (at < sheet.names.size()) band->SetDescription(sheet.names[at].c_str());
+    if (sheet.undeclared) band->SetColorInterpretation(GCI_Undefined);
     if (sheet.nodata) band->SetNoDataValue(*sheet.nodata);
     if (sheet.alpha && b == sheet.bands - 1) band->SetColorInterpretation(GCI_AlphaBand);
     std::vector<double> line(static_cast<std::size_t>(sheet.cols));

@@ -15,6 +15,8 @@ namespace {
 
 }  // namespace
 
+void silenceGdal() {}
+
 RasterShape readRasterShape(const std::filesystem::path& path) { refuse(path.string()); }
 
 RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& /*options*/,
@@ -25,6 +27,8 @@ RasterImage readRaster(const std::filesystem::path& path, const RasterOptions& /
 RasterHeights readHeights(const std::filesystem::path& path, const RasterPart& /*part*/) {
   refuse(path.string());
 }
+
+void checkGeoreference(const std::string& name, const RasterPlace& /*place*/) { refuse(name); }
 
 void checkMetres(const std::string& name, const RasterPlace& /*place*/) { refuse(name); }
 

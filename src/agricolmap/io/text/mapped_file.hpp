@@ -19,6 +19,9 @@ class MappedFile {
 
   std::span<const std::byte> bytes() const { return bytes_; }
   std::string_view text() const;
+  /// Lets go of the memory of what was read, which is read again where it is asked for again: for
+  /// those who go through large files once.
+  void forget() const;
 
  private:
   std::span<const std::byte> bytes_;

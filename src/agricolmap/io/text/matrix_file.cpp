@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/text/mapped_file.hpp"
 #include "agricolmap/io/text/number_file.hpp"
+#include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -46,9 +51,58 @@ Eigen::Affine3d matrixFrom(const std::vector<double>& n, const std::filesystem::
   return affineFrom(n, path);
 }
 
+/// The values behind a key of JSON: a text or a list, nested or not; nothing where the key is not
+/// there. Throws InputError when it is there twice.
+std::optional<std::string> valueOf(std::string_view json, const std::string& key,
+                                   const std::string& name) {
+  const std::string quoted = '"' + key + '"';
+  std::size_t at = json.find(quoted);
+  if (at == std::string_view::npos) return std::nullopt;
+  if (json.find(quoted, at + 1) != std::string_view::npos) {
+    throw InputError(fmt::format(
+        "{}: has '{}' more than once; write the one that is meant as 16 numbers", name, key));
+  }
+  at = json.find_first_not_of(": \t\r\n", at + quoted.size());
+  if (at == std::string_view::npos) return std::nullopt;
+  std::size_t end = at + 1;
+  if (json[at] == '"') {
+    end = json.find('"', end);
+  } else {
+    int depth = json[at] == '[' ? 1 : 0;
+    for (; end < json.size() && depth > 0; ++end) {
+      depth += json[end] == '[' ? 1 : json[end] == ']' ? -1 : 0;
+    }
+  }
+  std::string value(json.substr(at, std::min(end, json.size()) - at));
+  for (std::size_t escape = 0; (escape = value.find("\\n", escape)) != std::string::npos;) {
+    value.replace(escape, 2, " \n");
+  }
+  std::replace(value.begin(), value.end(), '"', ' ');
+  return value;
+}
+
+/// Of PDAL's pipelines and metadata; nothing for other files.
+std::optional<Eigen::Affine3d> pdalMatrix(const std::filesystem::path& path) {
+  constexpr std::size_t kMostBytes = 1U << 22;
+  const MappedFile file(path);
+  const std::string_view text = withoutMark(file.text()).substr(0, kMostBytes);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || (text[first] != '{' && text[first] != '[') ||
+      text.find('"') == std::string_view::npos) {
+    return std::nullopt;
+  }
+  for (const std::string key : {"composed", "transform", "matrix"}) {
+    if (const auto value = valueOf(text, key, path.string())) {
+      return matrixFrom(numbersIn(*value, path.string()).numbers, path);
+    }
+  }
+  throw InputError(fmt::format("{}: is JSON without a \"matrix\" of 16 numbers", path.string()));
+}
+
 }  // namespace
 
 Eigen::Affine3d readMatrix(const std::filesystem::path& path) {
+  if (const auto matrix = pdalMatrix(path)) return *matrix;
   return matrixFrom(readNumbers(path).numbers, path);
 }
 

@@ -10,7 +10,8 @@
 namespace agricolmap::io {
 
 /// Reads 16 numbers: finite, last row 0 0 0 1, invertible. Commas, brackets and `#` comments are
-/// fine. Throws InputError.
+/// fine. So is JSON of PDAL: the one "matrix" of a pipeline, or the "composed" one (else the
+/// "transform") that its ICP reports. Throws InputError.
 Eigen::Affine3d readMatrix(const std::filesystem::path& path);
 
 /// Writes 17 significant digits: what is read back is the same to the bit. `comment` goes first,

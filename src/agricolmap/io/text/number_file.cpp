@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/io/text/commas.hpp"
+#include "agricolmap/io/text/foreign_file.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 #include "agricolmap/io/text/text.hpp"
 
@@ -17,33 +19,43 @@ constexpr std::size_t kMaxBytes = 1U << 16;
 
 }  // namespace
 
-NumberFile readNumbers(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  std::string text(file.text().substr(0, kMaxBytes + 1));
-  if (text.size() > kMaxBytes) {
-    throw InputError(fmt::format("{}: too long for a file of a few numbers", path.string()));
-  }
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark of Windows editors
+NumberFile numbersIn(std::string_view whole_text, const std::string& name) {
+  std::string text(whole_text);
   std::replace_if(
       text.begin(), text.end(),
-      [](char c) { return std::string_view(",;[](){}").find(c) != std::string_view::npos; }, ' ');
+      [](char c) { return std::string_view("[](){}").find(c) != std::string_view::npos; }, ' ');
   NumberFile result;
   std::string_view rest = text;
+  const char line_end = lineEndOf(rest);
   for (std::size_t line = 1; !rest.empty(); ++line) {
-    const std::string_view whole = takeLine(rest);
-    for (const std::string_view word : splitWords(whole.substr(0, whole.find('#')))) {
-      const auto value = parseNumber(word);
+    const std::string_view whole = takeLine(rest, line_end);
+    const NumberWords numbers(whole.substr(0, whole.find('#')));
+    if (numbers.ambiguous()) {
+      throw InputError(fmt::format("{}: line {}: {}", name, line, kAmbiguousCommas));
+    }
+    for (const std::string_view word : numbers.words()) {
+      const auto value = numbers.parse(word);
       if (!value) {
-        throw InputError(fmt::format("{}: line {}: '{}' is no number", path.string(), line, word));
+        throw InputError(fmt::format("{}: line {}: '{}' is no number", name, line, word));
       }
       if (!std::isfinite(*value)) {
-        throw InputError(fmt::format("{}: line {}: '{}' is not finite", path.string(), line, word));
+        throw InputError(fmt::format("{}: line {}: '{}' is not finite", name, line, word));
       }
       result.numbers.push_back(*value);
       result.lines.push_back(line);
     }
   }
   return result;
+}
+
+NumberFile readNumbers(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  const std::string foreign = describeForeign(file.text());
+  if (!foreign.empty()) throw InputError(fmt::format("{}: {}", path.string(), foreign));
+  if (file.text().size() > kMaxBytes) {
+    throw InputError(fmt::format("{}: too long for a file of a few numbers", path.string()));
+  }
+  return numbersIn(withoutMark(file.text()), path.string());
 }
 
 std::string exactText(double value) { return fmt::format("{:.17g}", value); }

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/text/commas.hpp"
+#include "agricolmap/io/text/foreign_file.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 #include "agricolmap/io/text/number_file.hpp"
 #include "agricolmap/io/text/text.hpp"
@@ -28,25 +29,19 @@ struct Columns {
   std::array<std::optional<std::size_t>, 3> axis;
 };
 
-std::string lowerCase(std::string_view word) {
-  std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 class PathReader {
  public:
   explicit PathReader(const std::filesystem::path& path) : path_(path.string()) {}
 
   void add(std::string_view line, std::size_t number) {
-    std::string text(line.substr(0, line.find('#')));
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-    const std::vector<std::string_view> words = splitWords(text);
+    const NumberWords numbers(line.substr(0, line.find('#')));
+    const std::vector<std::string_view> words = numbers.words();
     if (words.empty()) return;
+    // A line of one decimal would be no place: "3,5" is x and y.
+    const bool pair = words.size() == 2 && line.find_first_of(" \t") == std::string_view::npos;
+    if (numbers.ambiguous() && !pair) fail(number, std::string(kAmbiguousCommas));
     if (!columns_) {
-      const bool names = !parseNumber(words.front());
+      const bool names = !numbers.parse(words.front());
       columns_ = names ? named(words, number) : usual(words, number);
       if (names) return;
     }
@@ -54,7 +49,7 @@ class PathReader {
       fail(number, fmt::format("{} values where lines before have {}; a path has as many in all",
                                words.size(), columns_->count));
     }
-    places_.push_back(placeOf(words, number));
+    places_.push_back(placeOf(numbers, words, number));
   }
 
   std::vector<Eigen::Vector3d> places() && {
@@ -107,13 +102,14 @@ class PathReader {
     }
   }
 
-  Eigen::Vector3d placeOf(const std::vector<std::string_view>& words, std::size_t line) const {
+  Eigen::Vector3d placeOf(const NumberWords& numbers, const std::vector<std::string_view>& words,
+                          std::size_t line) const {
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const std::optional<std::size_t> column = columns_->axis[static_cast<std::size_t>(axis)];
       if (!column) continue;
       const std::string_view word = words[*column];
-      const auto value = parseNumber(word);
+      const auto value = numbers.parse(word);
       if (!value) fail(line, fmt::format("'{}' is no number", word));
       if (!std::isfinite(*value)) {
         fail(line, fmt::format("'{}' is not finite; leave such places out", word));
@@ -132,10 +128,12 @@ class PathReader {
 
 std::vector<Eigen::Vector3d> readPath(const std::filesystem::path& path) {
   const MappedFile file(path);
-  std::string_view rest = file.text();
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark
+  const std::string foreign = describeForeign(file.text());
+  if (!foreign.empty()) throw InputError(fmt::format("{}: {}", path.string(), foreign));
+  std::string_view rest = withoutMark(file.text());
+  const char line_end = lineEndOf(rest);
   PathReader reader(path);
-  for (std::size_t line = 1; !rest.empty(); ++line) reader.add(takeLine(rest), line);
+  for (std::size_t line = 1; !rest.empty(); ++line) reader.add(takeLine(rest, line_end), line);
   return std::move(reader).places();
 }
 

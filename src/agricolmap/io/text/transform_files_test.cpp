@@ -105,5 +105,53 @@ TEST(MatrixFile, ReadsThePublishedTruth) {
   expectError<InputError>([&] { readTransform(dir.write("t", "1 2 3")); }, {"3 numbers"});
 }
 
+TEST(MatrixFile, ReadsWhatPdalWrites) {
+  const TempDir dir;
+  const auto at = [&](const std::string& text) {
+    return readMatrix(dir.write("m.json", text))(0, 3);
+  };
+  const std::string rows = "0 -1 0 7 1 0 0 8 0 0 1 9 0 0 0 1";
+  EXPECT_EQ(
+      at("{\"pipeline\": [{\"type\": \"filters.transformation\", \"matrix\": \"" + rows + "\"}]}"),
+      7.0);
+  EXPECT_EQ(at("[\"in.las\", {\"matrix\" : [[0,-1,0,7],[1,0,0,8],[0,0,1,9],[0,0,0,1]]}]"), 7.0);
+  EXPECT_EQ(at("{\"stages\": {\"filters.icp\": {\"centroid\": \"1 2 3\", \"composed\": \" 0 -1 0 "
+               "7\\n1 0 0 8\\n0 0 1 9\\n0 0 0 1\", \"transform\": \"1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 "
+               "1\"}}}"),
+            7.0);
+  const auto refused = [&](const std::string& text, std::initializer_list<const char*> parts) {
+    const auto path = dir.write("m.json", text);
+    expectError<InputError>([&] { readMatrix(path); }, parts);
+  };
+  refused("{\"matrix\": \"" + rows + "\", \"b\": {\"matrix\": \"" + rows + "\"}}",
+          {"m.json", "more than once"});
+  refused("{\"matrix\": \"1 2 3\"}", {"m.json", "3 numbers"});
+  refused("{\"matrix\": ", {"m.json"});
+  refused("{\"type\": \"readers.las\"}", {"m.json", "JSON"});
+}
+
+TEST(OffsetFile, ReadsWhatOpenDroneMapWrites) {
+  const TempDir dir;
+  const auto file =
+      dir.write("coords.txt", "WGS84 UTM 32N\n500000 5400000\n1.5 2.5 100\n2 3 100\n");
+  EXPECT_EQ(readOffset(file).translation(), Eigen::Vector3d(500000, 5400000, 0));
+  const auto damaged = dir.write("coords.txt", "WGS84 UTM 32N\n500000\n");
+  expectError<InputError>([&] { readOffset(damaged); }, {"coords.txt", "line 2"});
+}
+
+TEST(OffsetFile, OthersThatArePassedByAreNamed) {
+  const TempDir dir;
+  const auto cloud = dir.write("field.ply", "");
+  EXPECT_TRUE(offsetsPassedBy(cloud).empty());
+  const std::vector<std::string> expected{dir.write("coords.txt", ""),
+                                          dir.write("field_offset.xyz", ""),
+                                          dir.write("other.offset.xyz", "")};
+  dir.write("notes.txt", "");
+  EXPECT_EQ(offsetsPassedBy(cloud), expected);
+  dir.write("field.offset.xyz", "1 2 3\n");
+  EXPECT_TRUE(offsetsPassedBy(cloud).empty());
+  EXPECT_TRUE(offsetsPassedBy("/nowhere/field.ply").empty());
+}
+
 }  // namespace
 }  // namespace agricolmap::io

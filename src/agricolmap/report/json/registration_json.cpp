@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <optional>
 
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
@@ -40,7 +41,17 @@ Json stringsJson(const std::vector<std::string>& strings) {
   return json;
 }
 
-Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::Footprint& footprint,
+/// Of a cloud's file, before its coordinates were brought into the system of the report.
+Json fileCrsJson(const std::optional<Crs>& crs) {
+  if (!crs) return nullptr;
+  return {{"name", validUtf8(crs->name)},
+          {"wkt", validUtf8(crs->wkt)},
+          {"horizontal_unit_m", number(crs->horizontal_unit)},
+          {"vertical_unit_m", number(crs->vertical_unit)}};
+}
+
+Json cloudJson(const Cloud& cloud, const std::optional<Crs>& file_crs,
+               const map::Levelling& levelling, const map::Footprint& footprint,
                const map::GridMap& map) {
   Json json;
   json["path"] = validUtf8(cloud.name);
@@ -51,6 +62,7 @@ Json cloudJson(const Cloud& cloud, const map::Levelling& levelling, const map::F
   json["crs"] = cloud.crs.wkt.empty()
                     ? Json(nullptr)
                     : Json{{"name", validUtf8(cloud.crs.name)}, {"wkt", validUtf8(cloud.crs.wkt)}};
+  json["file_crs"] = fileCrsJson(file_crs);
   json["origin_m"] = vectorJson(cloud.origin);
   const Box3 box = boundingBox(cloud);
   json["box_min_m"] = vectorJson((cloud.origin + box.min.cast<double>()).eval());
@@ -220,6 +232,29 @@ Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registrat
   return json;
 }
 
+/// All that makes the deformation's function of place, as deform/deformation.hpp has it.
+Json functionJson(const deform::FileDeformation& function) {
+  const deform::Deformation& deformation = function.deformation();
+  Json path = Json::array();
+  for (const Eigen::Vector2d& corner : deformation.path().corners()) {
+    path.push_back(vectorJson(corner));
+  }
+  Json slips = Json::array();
+  for (const deform::Slip& slip : deformation.slips) {
+    slips.push_back({{"along_m", number(slip.along)}, {"offset_m", vectorJson(slip.offset)}});
+  }
+  Json json;
+  json["levelled_from_moving"] = matrixJson(function.levelledFromMoving().matrix());
+  json["path_m"] = std::move(path);
+  json["turn"] = matrixJson(deformation.turn());
+  json["spans"] = deformation.basis().spans();
+  json["spacing_m"] = number(deformation.basis().spacing());
+  json["coefficients_m"] = matrixJson(deformation.coefficients);
+  json["slips"] = std::move(slips);
+  json["fixed_from_displacement"] = matrixJson(function.fixedFromDisplacement());
+  return json;
+}
+
 /// How the strip is bent beside the transform, at the nodes of its spline.
 Json deformationJson(const Cloud& moving, const pipeline::Registration& registration) {
   if (!registration.transform.has_value() || !registration.placed->followed) return nullptr;
@@ -254,6 +289,7 @@ Json deformationJson(const Cloud& moving, const pipeline::Registration& registra
          {"place_deviation_m", number(slip.place_deviation)}});
   }
   json["slips"] = std::move(slips);
+  json["function"] = functionJson(displacement.function());
   return json;
 }
 
@@ -328,8 +364,10 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
       evidenceJson(registration.placed ? registration.placed->evidence : verdict::Evidence{});
   json["counts"] = countsJson(registration);
   const pipeline::PairMaps& maps = registration.maps;
-  json["fixed"] = cloudJson(fixed, maps.frames.fixed, maps.frames.fixed_footprint, maps.fixed);
-  json["moving"] = cloudJson(moving, maps.frames.moving, maps.frames.moving_footprint, maps.moving);
+  json["fixed"] = cloudJson(fixed, info.fixed_file_crs, maps.frames.fixed,
+                            maps.frames.fixed_footprint, maps.fixed);
+  json["moving"] = cloudJson(moving, info.moving_file_crs, maps.frames.moving,
+                             maps.frames.moving_footprint, maps.moving);
   json["times"] = timesJson(monitor);
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = threadsInForce(info.threads);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct RegistrationReportInfo {
   std::string prior_source;           ///< in words, e.g. the files it came from
   nlohmann::ordered_json options;     ///< all options in force
   std::vector<std::string> pictures;  ///< names of the pictures beside the report
+  /// What the coordinates of the files themselves are in; nothing where nobody said.
+  std::optional<Crs> fixed_file_crs;
+  std::optional<Crs> moving_file_crs;
 };
 
 /// What was said about the clouds when they were read, and on the way.

@@ -179,6 +179,7 @@ Raster<float> resampleHeights(const std::filesystem::path& path, const io::Raste
   bool any = false;
   if (window) {
     io::RasterHeights heights = io::readHeights(path, {.window = window});
+    field.warnings.insert(field.warnings.end(), heights.warnings.begin(), heights.warnings.end());
     io::removeFarHeights(heights.height, kFarFromMedian);
     resample(
         grid, *heights.place.world_from_pixel, heights.height.rows(), heights.height.cols(),
@@ -315,6 +316,7 @@ OrthoField readOrtho(const OrthoFiles& files, const OrthoFileOptions& options,
   OrthoField field;
   field.name = mosaic.name;
   field.gsd = grid.cell;
+  field.warnings = mosaic.warnings;
   if (georeferenced) field.corner = grid.corner;
   resampleColours(mosaic, grid, field);
   if (!files.dsm.empty()) field.height = resampleHeights(files.dsm, mosaic, grid, field);

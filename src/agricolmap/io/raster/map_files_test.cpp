@@ -1,0 +1,78 @@
+#include "agricolmap/io/raster/map_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include "agricolmap/io/raster/raster_test_support.hpp"
+#include "agricolmap/io/test_support.hpp"
+
+namespace agricolmap::io {
+namespace {
+
+using test::expectError;
+using test::Sheet;
+using test::TempDir;
+using test::writeSheet;
+
+Sheet heights() {
+  Sheet sheet;
+  sheet.bands = 1;
+  sheet.type = GDT_Float32;
+  sheet.value = [](int, int col, int row) { return 300.0 + 0.25 * col + 0.1 * row; };
+  return sheet;
+}
+
+TEST(MapFiles, AreTwoRastersWithACommaOrOneFile) {
+  const TempDir dir;
+  const std::string ortho = writeSheet(dir / "o.tif", {});
+  const std::string dsm = writeSheet(dir / "d,1.tif", heights());
+  const MapFiles both = mapFilesOf(ortho + "," + dsm);
+  EXPECT_TRUE(both.raster);
+  EXPECT_EQ(both.main, ortho);
+  EXPECT_EQ(both.model, dsm);
+  EXPECT_TRUE(mapFilesOf(ortho).raster);
+  EXPECT_EQ(mapFilesOf(ortho).model, std::nullopt);
+  EXPECT_FALSE(mapFilesOf(dir.write("a,b.xyz", "1 2 3\n")).raster);
+  EXPECT_FALSE(mapFilesOf("nowhere.ply").raster);
+  expectError<InputError>([&] { mapFilesOf(ortho + ",none.tif"); }, {"none.tif", "surface model"});
+  expectError<InputError>([&] { mapFilesOf("none.tif," + dsm); }, {"none.tif", "orthomosaic"});
+}
+
+TEST(MapFiles, RastersAreCloudsInTheirOwnSystem) {
+  const TempDir dir;
+  const std::string ortho = writeSheet(dir / "o.tif", {});
+  const MapFiles both = mapFilesOf(ortho + "," + writeSheet(dir / "d.tif", heights()).string());
+  EXPECT_EQ(crsOfMap(both).crs.value().name, "WGS 84 / UTM zone 32N");
+  const Cloud cloud = readMap(both);
+  ASSERT_EQ(cloud.size(), 48U);
+  EXPECT_TRUE(cloud.warnings.empty());
+  EXPECT_NEAR(cloud.filePoint(1).z(), 300.25, 1e-4);
+  const Cloud flat = readMap(mapFilesOf(ortho));
+  ASSERT_EQ(flat.size(), 48U);
+  EXPECT_EQ(flat.filePoint(1), Eigen::Vector3d(500000.75, 4999999.75, 0.0));
+  ASSERT_EQ(flat.warnings.size(), 1U);
+  EXPECT_NE(flat.warnings[0].find("laid flat"), std::string::npos);
+}
+
+TEST(MapFiles, RastersAreBroughtToTheSystemOfTheOther) {
+  const TempDir dir;
+  Sheet feet;
+  feet.epsg = 2263;  // New York, US survey feet
+  feet.place = {980000.0, 2.0, 0.0, 200000.0, 0.0, -2.0};
+  Sheet model = heights();
+  model.epsg = 2263;
+  model.place = feet.place;
+  model.unit = "ft";
+  const MapFiles files = mapFilesOf(writeSheet(dir / "o.tif", feet).string() + "," +
+                                    writeSheet(dir / "d.tif", model).string());
+  const FileCrs crs = crsOfMap(files);
+  EXPECT_NEAR(crs.crs.value().horizontal_unit, 1200.0 / 3937.0, 1e-12);
+  EXPECT_EQ(crs.crs.value().vertical_unit, 1.0);
+  const CommonFrame frame = commonFrame(crs, crs);
+  ASSERT_NE(frame.fixed, nullptr);
+  const Cloud cloud = readMap(files, {true, frame.fixed.get()});
+  EXPECT_NEAR(cloud.filePoint(1).x(), 980003.0 * 1200.0 / 3937.0, 1e-4);
+  EXPECT_NEAR(cloud.filePoint(1).z(), 300.25 * 0.3048, 1e-4);
+}
+
+}  // namespace
+}  // namespace agricolmap::io
