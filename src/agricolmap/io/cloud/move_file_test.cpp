@@ -91,9 +91,8 @@ TEST_F(MoveFile, PlyKeepsAllButCoordinatesAndNormals) {
     const std::size_t length = 1 + 3 * 8 + 4 + 2 + 12;
     const Eigen::Vector3d up = someAffine({}).linear().inverse().transpose().col(2);
     std::string normal;
-    for (const double n : Eigen::Vector3d(2.0 * up.normalized())) {
-      append(normal, static_cast<float>(n), big);
-    }
+    const Eigen::Vector3f twice = (2.0 * up.normalized()).cast<float>();
+    for (int c = 0; c < 3; ++c) append(normal, twice[c], big);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::size_t record = body + i * length;
       wanted.replace(record + length - 12, 12, normal);
