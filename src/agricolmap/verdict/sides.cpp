@@ -19,8 +19,7 @@ constexpr double kBeyondNeighbours = 1.8;
 
 std::optional<double> sidesApart(const Evidence& evidence) {
   if (evidence.block_size.minCoeff() <= 0.0) return std::nullopt;
-  const auto across = static_cast<long>(
-      std::lround(2.0 * evidence.strip.half_extent.y() / evidence.block_size.y()));
+  const long across = std::lround(2.0 * evidence.strip.half_extent.y() / evidence.block_size.y());
   if (across < 2) return std::nullopt;
   // The outermost blocks of either side, by their number along the strip.
   std::map<long, Eigen::Vector2d> sides[2];
