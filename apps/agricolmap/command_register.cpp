@@ -143,8 +143,8 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
       pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor, {}, path);
   printWarnings(monitor.warnings());
   info.pictures = writeResults(arguments, options, pair, result, output, monitor);
-  report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result,
-                                monitor, info);
+  report::writeRegistrationJson(output.path("registration.json"), CloudStream(pair.fixed),
+                                pair.moving, result, monitor, info);
   throwIfInterrupted();
   std::vector<std::string> stale = report::pictureNames();
   stale.emplace_back("transform.txt");
