@@ -1,5 +1,6 @@
 #include "common.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -18,12 +19,40 @@ Progress::~Progress() {
   if (active_) std::fputs("\r\033[K", stderr);
 }
 
+void Progress::show(std::string_view text) const {
+  if (!active_) return;
+  std::fprintf(stderr, "\r\033[K%.*s", static_cast<int>(text.size()), text.data());
+  std::fflush(stderr);
+}
+
 void Progress::step(std::string_view what) {
-  if (active_) {
-    std::fprintf(stderr, "\r\033[K%.*s ...", static_cast<int>(what.size()), what.data());
-    std::fflush(stderr);
-  }
+  step_ = what;
+  seen_ = 0;
+  pass_ = {};
+  shown_ = 0.0;
+  show(fmt::format("{} ...", step_));
   spdlog::debug("{}", what);
+}
+
+void Progress::points(std::size_t seen, std::size_t of) {
+  constexpr double kBetween = 0.25;  // [s]
+  if (seen < seen_) {                // the next pass
+    pass_ = {};
+    shown_ = 0.0;
+  }
+  seen_ = seen;
+  const double seconds = pass_.seconds();
+  if (seconds < shown_ + kBetween) return;
+  shown_ = seconds;
+  show(fmt::format("{}: {}", step_, passText(seen, of, seconds)));
+}
+
+std::string passText(std::size_t seen, std::size_t of, double seconds) {
+  constexpr double kMillion = 1e6;
+  const double rate = static_cast<double>(seen) / seconds;
+  return fmt::format("{:.0f} of {:.0f} million points, {:.0f} million/s, {:.0f} s left",
+                     static_cast<double>(seen) / kMillion, static_cast<double>(of) / kMillion,
+                     rate / kMillion, static_cast<double>(of - seen) / rate);
 }
 
 std::string flagsFor(Remedy remedy) {

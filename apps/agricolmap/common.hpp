@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/stopwatch.hpp"
 #include "support/exit_code.hpp"
 
 namespace agricolmap {
@@ -42,6 +43,10 @@ CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);
 
+/// How a pass over a cloud's points goes on: "30 of 100 million points, 25 million/s, 3 s left".
+/// `seconds`: since it began.
+std::string passText(std::size_t seen, std::size_t of, double seconds);
+
 /// One line on stderr that names the current step; silent unless stderr is a terminal.
 class Progress {
  public:
@@ -50,9 +55,17 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void step(std::string_view what);
+  /// Of the step's present pass over a cloud, `seen` of `of` points are done. Passes that are short
+  /// are not worth a word.
+  void points(std::size_t seen, std::size_t of);
 
  private:
+  void show(std::string_view text) const;
   bool active_;
+  std::string step_;
+  std::size_t seen_ = 0;
+  Stopwatch pass_;
+  double shown_ = 0.0;  ///< when, in the pass [s]
 };
 
 /// The flags that are this remedy, as ` (--overwrite)`; empty where there are none.

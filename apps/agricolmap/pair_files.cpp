@@ -8,6 +8,7 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
@@ -53,7 +54,8 @@ void PairFiles::check() const {
       fmt::format("--aligned-format {}: is none of ply, pcd, las, laz and auto", aligned));
 }
 
-LoadedPair loadPair(const PairFiles& files) {
+LoadedPair loadPair(const PairFiles& files,
+                    const std::function<void(std::size_t, std::size_t)>& on_pass) {
   LoadedPair pair;
   const io::FileCrs fixed = io::crsOf(files.fixed, files.fixed_crs);
   const io::FileCrs moving = io::crsOf(files.moving, files.moving_crs);
@@ -65,12 +67,19 @@ LoadedPair loadPair(const PairFiles& files) {
   }
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
-    Cloud& cloud = i == 0 ? pair.fixed : pair.moving;
-    const io::CoordinateMap* const map = (i == 0 ? pair.frame.fixed : pair.frame.moving).get();
-    cloud = io::readCloud(i == 0 ? files.fixed : files.moving, {true, map});
-    cloud.crs = pair.frame.crs;
+    if (i == 0) {
+      io::StreamOptions options;
+      options.read.map = pair.frame.fixed.get();
+      options.on_pass = on_pass;
+      options.crs = pair.frame.crs;
+      pair.fixed = io::streamCloud(files.fixed, options);
+    } else {
+      pair.moving = io::readCloud(files.moving, {true, pair.frame.moving.get()});
+      pair.moving.crs = pair.frame.crs;
+    }
   });
-  io::checkGroundScale(pair.fixed.name, pair.frame.crs, pair.fixed.origin.head<2>());
+  const CloudFacts& fixed_facts = pair.fixed->facts();
+  io::checkGroundScale(fixed_facts.name, pair.frame.crs, fixed_facts.origin.head<2>());
   return pair;
 }
 

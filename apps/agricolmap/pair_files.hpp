@@ -4,10 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/cloud/point_move.hpp"
 #include "agricolmap/io/crs/crs.hpp"
@@ -27,14 +30,17 @@ struct PairFiles {
   void check() const;
 };
 
-/// Both clouds in the coordinate system that they have in common, in metres.
+/// Both clouds in the coordinate system that they have in common, in metres. The fixed one passes
+/// by and is not kept.
 struct LoadedPair {
-  Cloud fixed;
-  Cloud moving;
   io::CommonFrame frame;
+  std::unique_ptr<PointStream> fixed;
+  Cloud moving;
   io::CloudFormat aligned = io::CloudFormat::kPly;
 };
-LoadedPair loadPair(const PairFiles& files);
+/// `on_pass` hears of the points of the fixed cloud; see StreamOptions.
+LoadedPair loadPair(const PairFiles& files,
+                    const std::function<void(std::size_t, std::size_t)>& on_pass = {});
 
 /// "aligned.ply", for every format.
 std::vector<std::string> alignedNames();

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/ascii_source.hpp"
@@ -295,8 +297,17 @@ std::vector<std::byte> decompress(const Header& header, std::span<const std::byt
   return out;
 }
 
-Cloud readAscii(const Header& header, const Roles& roles, std::string_view text,
-                const std::string& name, const CoordinateMap* map) {
+/// Points that were decompressed as a whole.
+class DecompressedSource : public BinarySource {
+ public:
+  DecompressedSource(std::vector<std::byte> bytes, const BinaryColumns& columns)
+      : BinarySource(columns), bytes_(std::move(bytes)) {}
+
+ private:
+  std::vector<std::byte> bytes_;  ///< what the columns look into
+};
+
+void openAscii(const Header& header, const Roles& roles, std::string_view text, PointFile& file) {
   using Use = AsciiColumn::Use;
   const auto use_of = [&](std::size_t field) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -308,7 +319,7 @@ Cloud readAscii(const Header& header, const Roles& roles, std::string_view text,
     return roles.packed == field ? Use::kPacked : Use::kSkip;
   };
   AsciiLayout layout;
-  layout.name = name;
+  layout.name = file.name;
   layout.text = text;
   layout.points = header.points;
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
@@ -319,45 +330,44 @@ Cloud readAscii(const Header& header, const Roles& roles, std::string_view text,
     const auto type = [&](std::size_t c) { return header.fields[(*roles.colour)[c]].type; };
     layout.colour = colourKindOf({type(0), type(1), type(2)});
   }
-  const AsciiSource source(std::move(layout));
-  Cloud cloud = assembleCloud(source, name, map);
-  warnOfRest(source.extraLines(), "lines", cloud);
-  return cloud;
+  auto source = std::make_unique<AsciiSource>(std::move(layout));
+  warnOfRest(source->extraLines(), "lines", file);
+  file.source = std::move(source);
 }
 
-Cloud readPoints(const Header& header, const Roles& roles, const MappedFile& file,
-                 const std::string& name, const CoordinateMap* map) {
-  const std::span<const std::byte> data = file.bytes().subspan(header.bytes);
+void openData(const Header& header, const Roles& roles, const MappedFile& mapped, PointFile& file) {
+  const std::span<const std::byte> data = mapped.bytes().subspan(header.bytes);
   switch (header.encoding) {
     case Encoding::kAscii:
-      return readAscii(header, roles, file.text().substr(header.bytes), name, map);
+      openAscii(header, roles, mapped.text().substr(header.bytes), file);
+      return;
     case Encoding::kBinary: {
-      const std::uint64_t used = checkedBytes(header, data.size(), name);
-      Cloud cloud =
-          assembleCloud(BinarySource(columnsOf(header, roles, data.data(), true)), name, map);
-      warnOfRest(data.size() - used, "bytes", cloud);
-      return cloud;
+      const std::uint64_t used = checkedBytes(header, data.size(), file.name);
+      file.source = std::make_unique<BinarySource>(columnsOf(header, roles, data.data(), true));
+      warnOfRest(data.size() - used, "bytes", file);
+      return;
     }
     case Encoding::kCompressed:
       break;
   }
   std::size_t rest = 0;
-  const std::vector<std::byte> plain = decompress(header, data, name, rest);
-  Cloud cloud =
-      assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name, map);
-  warnOfRest(rest, "bytes", cloud);
-  return cloud;
+  std::vector<std::byte> plain = decompress(header, data, file.name, rest);
+  const BinaryColumns columns = columnsOf(header, roles, plain.data(), false);
+  file.source = std::make_unique<DecompressedSource>(std::move(plain), columns);
+  warnOfRest(rest, "bytes", file);
 }
 
 }  // namespace
 
-Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+PointFile openPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
   const Header header = Parser(file.text(), name).parse();
-  Cloud cloud = readPoints(header, findRoles(header, name, options), file, name, options.map);
+  PointFile opened;
+  opened.name = name;
+  openData(header, findRoles(header, name, options), file, opened);
   std::vector<std::string> names;
   for (const Field& field : header.fields) names.push_back(field.name);
-  cloud.fields = fieldList(names);
-  return cloud;
+  opened.fields = fieldList(names);
+  return opened;
 }
 
 }  // namespace agricolmap::io

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
@@ -119,11 +121,14 @@ class Walker {
 /// Binary vertices with lists among their properties.
 class ListedSource : public PointSource {
  public:
-  ListedSource(const VertexLayout& layout, std::span<const std::byte> data, bool swap,
-               const std::string& name)
-      : layout_(layout),
+  /// `layout` points into `header`, which is kept.
+  ListedSource(std::shared_ptr<const PlyHeader> header, const VertexLayout& layout,
+               std::span<const std::byte> data, bool swap, const std::string& name)
+      : header_(std::move(header)),
+        name_(name),
+        layout_(layout),
         swap_(swap),
-        walker_(*layout.vertex, data.data() + data.size(), swap, name) {
+        walker_(*layout.vertex, data.data() + data.size(), swap, name_) {
     const std::byte* from = data.data();
     for (std::uint64_t i = 0; i < layout.vertex->count; ++i) {
       if (i % kChunk == 0) {
@@ -175,6 +180,8 @@ class ListedSource : public PointSource {
 
  private:
   static constexpr std::size_t kChunk = 1U << 12;
+  std::shared_ptr<const PlyHeader> header_;
+  std::string name_;
   VertexLayout layout_;
   bool swap_;
   Walker walker_;
@@ -229,11 +236,11 @@ std::span<const std::byte> skipTo(const PlyHeader& header, const PlyElement& ver
   return data;
 }
 
-Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
-                 std::span<const std::byte> data, const std::string& name,
-                 const CoordinateMap* map) {
-  const bool swap = header.format == PlyFormat::kBigEndian;
-  data = skipTo(header, *layout.vertex, data, swap, name);
+void openBinary(const std::shared_ptr<const PlyHeader>& header, const VertexLayout& layout,
+                std::span<const std::byte> data, PointFile& file) {
+  const std::string& name = file.name;
+  const bool swap = header->format == PlyFormat::kBigEndian;
+  data = skipTo(*header, *layout.vertex, data, swap, name);
   const PlyElement& vertex = *layout.vertex;
   const std::size_t each = vertex.fixedBytes();
   if (vertex.count > data.size() / each) {
@@ -244,15 +251,14 @@ Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
         data.size() / each));
   }
   if (vertex.hasLists()) {
-    const ListedSource source(layout, data, swap, name);
-    Cloud cloud = assembleCloud(source, name, map);
-    const auto rest = static_cast<std::size_t>(data.data() + data.size() - source.end());
-    if (isLast(header, vertex)) warnOfRest(rest, "bytes", cloud);
-    return cloud;
+    auto source = std::make_unique<ListedSource>(header, layout, data, swap, name);
+    const auto rest = static_cast<std::size_t>(data.data() + data.size() - source->end());
+    if (isLast(*header, vertex)) warnOfRest(rest, "bytes", file);
+    file.source = std::move(source);
+    return;
   }
-  Cloud cloud = assembleCloud(BinarySource(columnsOf(layout, data.data(), swap)), name, map);
-  if (isLast(header, vertex)) warnOfRest(data.size() - vertex.count * each, "bytes", cloud);
-  return cloud;
+  file.source = std::make_unique<BinarySource>(columnsOf(layout, data.data(), swap));
+  if (isLast(*header, vertex)) warnOfRest(data.size() - vertex.count * each, "bytes", file);
 }
 
 std::vector<AsciiColumn> asciiColumns(const VertexLayout& layout) {
@@ -270,8 +276,8 @@ std::vector<AsciiColumn> asciiColumns(const VertexLayout& layout) {
   return columns;
 }
 
-Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string_view text,
-                const std::string& name, const CoordinateMap* map) {
+void openAscii(const PlyHeader& header, const VertexLayout& layout, std::string_view text,
+               PointFile& file) {
   for (const PlyElement* e = header.elements.data(); e != layout.vertex; ++e) {
     for (std::uint64_t i = 0; i < e->count && !e->properties.empty(); ++i) {
       while (!text.empty() && splitWords(takeLine(text)).empty()) {
@@ -279,30 +285,32 @@ Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string
       if (text.empty()) break;  // counted with the vertices' lines
     }
   }
-  const AsciiSource source(
-      {name, text, layout.vertex->count, asciiColumns(layout), layout.colourKind()});
-  Cloud cloud = assembleCloud(source, name, map);
-  if (layout.vertex == &header.elements.back()) warnOfRest(source.extraLines(), "lines", cloud);
-  return cloud;
+  auto source = std::make_unique<AsciiSource>(AsciiLayout{
+      file.name, text, layout.vertex->count, asciiColumns(layout), layout.colourKind()});
+  if (layout.vertex == &header.elements.back()) warnOfRest(source->extraLines(), "lines", file);
+  file.source = std::move(source);
 }
 
 }  // namespace
 
-Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
-  const PlyHeader header = parsePlyHeader(file.text(), name);
-  const VertexLayout layout = vertexLayout(header, name, options);
-  Cloud cloud =
-      header.format == PlyFormat::kAscii
-          ? readAscii(header, layout, file.text().substr(header.bytes), name, options.map)
-          : readBinary(header, layout, file.bytes().subspan(header.bytes), name, options.map);
+PointFile openPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+  const auto header = std::make_shared<const PlyHeader>(parsePlyHeader(file.text(), name));
+  const VertexLayout layout = vertexLayout(*header, name, options);
+  PointFile opened;
+  opened.name = name;
+  if (header->format == PlyFormat::kAscii) {
+    openAscii(*header, layout, file.text().substr(header->bytes), opened);
+  } else {
+    openBinary(header, layout, file.bytes().subspan(header->bytes), opened);
+  }
   std::vector<std::string> names;
   for (const PlyProperty& property : layout.vertex->properties) names.push_back(property.name);
-  cloud.fields = fieldList(names);
+  opened.fields = fieldList(names);
   if (layout.partly_coloured) {
-    cloud.warnings.push_back(fmt::format(
+    opened.notes.push_back(fmt::format(
         "{}: its colours are incomplete (red, green and blue are needed); ignored", name));
   }
-  return cloud;
+  return opened;
 }
 
 }  // namespace agricolmap::io
