@@ -68,7 +68,7 @@ struct Registration {
   bool bent() const { return placed && placed->followed; }
 };
 
-/// Registers `moving` into `fixed`, which passes by four to seven times. `guess`: moving file
+/// Registers `moving` into `fixed`, which passes by four times or more. `guess`: moving file
 /// coordinates → fixed file coordinates. Throws InputError for clouds that cannot be used,
 /// UsageError for options outside their limits, Interrupted when the monitor's token asks to stop.
 /// A registration that fails is a rejected result, not an exception. `locator` stands in for the
