@@ -140,11 +140,9 @@ Levelling levelFrom(const Eigen::Affine3d& start, const CloudFacts& cloud,
       for (const Eigen::Vector3d& p : points) box.extend(p);
       throw InputError(fmt::format(
           "{}: only {} ground cells of {} m hold 3 points or more, of {} points over {:.3g} x "
-          "{:.3g} "
-          "m: are its coordinates metres? If they are, the cloud is too sparse or too small to "
-          "level "
-          "(reduce level.cell)",
-          cloud.name, low.size(), options.cell, cloud.size(), box.sizes().x(), box.sizes().y()));
+          "{:.3g} m: are its coordinates metres? If they are, the cloud is too sparse or too small "
+          "to level (reduce level.cell)",
+          cloud.name, low.size(), options.cell, cloud.points, box.sizes().x(), box.sizes().y()));
     }
     const GroundPlane plane = fitPlane(low, centre, options.cell);
     makeLevel(plane, centre, levelled);
