@@ -142,7 +142,7 @@ io::CopiedCloud apply(const Job& job, const report::StoredRegistration& run,
   io::CopiedCloud copied =
       io::moveFile(job.from, output.path(job.name), job.format,
                    {frame.moving.get(), run.moving_origin, moveOf(run), frame.crs},
-                   [&](std::uint64_t done) { progress.share(job.from, done, points); });
+                   [&](std::uint64_t done) { progress.points(done, points); });
   printWarnings(copied.warnings);
   if (!io::isLas(job.format) && !frame.crs.wkt.empty()) {
     printWarnings({fmt::format("{}: {} has no place for the coordinate system, {}", job.name,

@@ -50,9 +50,8 @@ Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudForm
     move->crs = frame->crs;
   }
   const std::uint64_t points = io::pointsOf(from);
-  const io::CopiedCloud copied = io::copyLas(from, to, format, move, crs, [&](std::uint64_t done) {
-    progress.share("convert", done, points);
-  });
+  const io::CopiedCloud copied = io::copyLas(
+      from, to, format, move, crs, [&](std::uint64_t done) { progress.points(done, points); });
   printWarnings(copied.warnings);
   return {copied.points, copied.left_out};
 }

@@ -135,19 +135,22 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   info.prior =
       initialGuess(io::mapFilesOf(arguments.files.fixed).main,
                    io::mapFilesOf(arguments.files.moving).main, arguments.prior, info.prior_source);
-  const LoadedPair pair = monitor.run(Stage::kRead, [&] { return loadPair(arguments.files); });
+  const LoadedPair pair = monitor.run(Stage::kRead, [&] {
+    return loadPair(arguments.files,
+                    [&](std::size_t seen, std::size_t of) { progress.points(seen, of); });
+  });
   info.fixed_file_crs = pair.frame.fixed_file;
   info.moving_file_crs = pair.frame.moving_file;
   for (const std::string& warning : pair.frame.warnings) monitor.warn(warning);
-  printWarnings(pair.fixed.warnings);
+  printWarnings(pair.fixed->facts().warnings);
   printWarnings(pair.moving.warnings);
   const std::vector<Eigen::Vector3d> path =
       arguments.path.empty() ? std::vector<Eigen::Vector3d>{} : io::readPath(arguments.path);
   const pipeline::Registration result =
-      pipeline::registerClouds(pair.fixed, pair.moving, info.prior, options, monitor, {}, path);
+      pipeline::registerClouds(*pair.fixed, pair.moving, info.prior, options, monitor, {}, path);
   printWarnings(monitor.warnings());
   info.pictures = writeResults(arguments, options, pair, result, output, monitor);
-  report::writeRegistrationJson(output.path("registration.json"), pair.fixed, pair.moving, result,
+  report::writeRegistrationJson(output.path("registration.json"), *pair.fixed, pair.moving, result,
                                 monitor, info);
   throwIfInterrupted();
   std::vector<std::string> stale = report::pictureNames();

@@ -20,22 +20,40 @@ Progress::~Progress() {
   if (active_) std::fputs("\r\033[K", stderr);
 }
 
+void Progress::show(std::string_view text) const {
+  if (!active_) return;
+  std::fprintf(stderr, "\r\033[K%.*s", static_cast<int>(text.size()), text.data());
+  std::fflush(stderr);
+}
+
 void Progress::step(std::string_view what) {
-  since_step_ = Stopwatch();
-  if (active_) {
-    std::fprintf(stderr, "\r\033[K%.*s ...", static_cast<int>(what.size()), what.data());
-    std::fflush(stderr);
-  }
+  step_ = what;
+  seen_ = 0;
+  pass_ = {};
+  shown_ = 0.0;
+  show(fmt::format("{} ...", step_));
   spdlog::debug("{}", what);
 }
 
-void Progress::share(std::string_view what, std::uint64_t done, std::uint64_t points) {
-  if (!active_ || done == 0 || points == 0) return;
-  const double rate = static_cast<double>(done) / std::max(since_step_.seconds(), 1e-3);
-  const double left = static_cast<double>(points - std::min(points, done)) / rate;
-  fmt::print(stderr, "\r\033[K{}: {:.0f} %, {:.1f} million points/s, {:.0f} s left", what,
-             100.0 * static_cast<double>(done) / static_cast<double>(points), 1e-6 * rate, left);
-  std::fflush(stderr);
+void Progress::points(std::size_t seen, std::size_t of) {
+  constexpr double kBetween = 0.25;  // [s]
+  if (seen < seen_) {                // the next pass
+    pass_ = {};
+    shown_ = 0.0;
+  }
+  seen_ = seen;
+  const double seconds = pass_.seconds();
+  if (seen == 0 || seconds < shown_ + kBetween) return;
+  shown_ = seconds;
+  show(fmt::format("{}: {}", step_, passText(seen, of, seconds)));
+}
+
+std::string passText(std::size_t seen, std::size_t of, double seconds) {
+  constexpr double kMillion = 1e6;
+  const double rate = static_cast<double>(seen) / seconds;
+  return fmt::format("{:.1f} of {:.1f} million points, {:.1f} million/s, {:.0f} s left",
+                     static_cast<double>(seen) / kMillion, static_cast<double>(of) / kMillion,
+                     rate / kMillion, static_cast<double>(of - std::min(seen, of)) / rate);
 }
 
 std::string flagsFor(Remedy remedy) {

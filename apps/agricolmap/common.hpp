@@ -45,6 +45,11 @@ CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);
 
+/// How a pass over a cloud's points goes on: "30.0 of 100.0 million points, 25.0 million/s, 3 s
+/// left".
+/// `seconds`: since it began.
+std::string passText(std::size_t seen, std::size_t of, double seconds);
+
 /// One line on stderr that names the current step; silent unless stderr is a terminal.
 class Progress {
  public:
@@ -53,12 +58,17 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void step(std::string_view what);
-  /// How far a step has come, of how many points, how fast, and how long it will take.
-  void share(std::string_view what, std::uint64_t done, std::uint64_t points);
+  /// Of the step's present pass over a cloud, `seen` of `of` points are done. Passes that are short
+  /// are not worth a word.
+  void points(std::size_t seen, std::size_t of);
 
  private:
+  void show(std::string_view text) const;
   bool active_;
-  Stopwatch since_step_;
+  std::string step_;
+  std::size_t seen_ = 0;
+  Stopwatch pass_;
+  double shown_ = 0.0;  ///< when, in the pass [s]
 };
 
 /// The flags that are this remedy, as ` (--overwrite)`; empty where there are none.

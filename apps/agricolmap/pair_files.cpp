@@ -48,25 +48,32 @@ io::CloudFormat formatNamed(const std::string& flag, const std::string& name) {
   throw UsageError(fmt::format("{} {}: is none of ply, pcd, las, laz, copc and auto", flag, name));
 }
 
-LoadedPair loadPair(const PairFiles& files) {
+LoadedPair loadPair(const PairFiles& files,
+                    const std::function<void(std::size_t, std::size_t)>& on_pass) {
   LoadedPair pair;
   const io::MapFiles fixed_files = io::mapFilesOf(files.fixed);
   const io::MapFiles moving_files = io::mapFilesOf(files.moving);
   const io::FileCrs fixed = io::crsOfMap(fixed_files, files.fixed_crs);
   const io::FileCrs moving = io::crsOfMap(moving_files, files.moving_crs);
   pair.frame = io::commonFrame(fixed, moving);
-  pair.format =
-      moving_files.raster ? io::CloudFormat::kPly : io::formatOf(moving_files.main);
+  pair.format = moving_files.raster ? io::CloudFormat::kPly : io::formatOf(moving_files.main);
   pair.aligned = io::isLas(pair.format) ? pair.format : io::CloudFormat::kPly;
   if (files.aligned != "auto") pair.aligned = formatNamed("--aligned-format", files.aligned);
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
-    Cloud& cloud = i == 0 ? pair.fixed : pair.moving;
-    const io::CoordinateMap* const map = (i == 0 ? pair.frame.fixed : pair.frame.moving).get();
-    cloud = io::readMap(i == 0 ? fixed_files : moving_files, {true, map});
-    cloud.crs = pair.frame.crs;
+    if (i == 0) {
+      io::StreamOptions options;
+      options.read.map = pair.frame.fixed.get();
+      options.on_pass = on_pass;
+      options.crs = pair.frame.crs;
+      pair.fixed = io::streamMap(fixed_files, options);
+    } else {
+      pair.moving = io::readMap(moving_files, {true, pair.frame.moving.get()});
+      pair.moving.crs = pair.frame.crs;
+    }
   });
-  io::checkGroundScale(pair.fixed.name, pair.frame.crs, pair.fixed.origin.head<2>());
+  const CloudFacts& fixed_facts = pair.fixed->facts();
+  io::checkGroundScale(fixed_facts.name, pair.frame.crs, fixed_facts.origin.head<2>());
   return pair;
 }
 

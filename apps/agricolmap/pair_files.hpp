@@ -4,10 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/cloud/point_move.hpp"
 #include "agricolmap/io/crs/crs.hpp"
@@ -28,15 +31,18 @@ struct PairFiles {
   void check() const;
 };
 
-/// Both clouds in the coordinate system that they have in common, in metres.
+/// Both clouds in the coordinate system that they have in common, in metres. The fixed one passes
+/// by and is not kept.
 struct LoadedPair {
-  Cloud fixed;
-  Cloud moving;
   io::CommonFrame frame;
   io::CloudFormat format = io::CloudFormat::kPly;   ///< of MOVING
   io::CloudFormat aligned = io::CloudFormat::kPly;  ///< of the aligned cloud
+  std::unique_ptr<PointStream> fixed;
+  Cloud moving;
 };
-LoadedPair loadPair(const PairFiles& files);
+/// `on_pass` hears of the points of the fixed cloud; see StreamOptions.
+LoadedPair loadPair(const PairFiles& files,
+                    const std::function<void(std::size_t, std::size_t)>& on_pass = {});
 
 /// The format that is called `name` ("copc"). Throws UsageError, naming `flag`, where none is.
 io::CloudFormat formatNamed(const std::string& flag, const std::string& name);

@@ -45,20 +45,21 @@ PeerMaps makePeerMaps(const MethodInput& input, MethodTimes& times) {
   }
   const pipeline::RegistrationOptions paper = pipeline::preset("paper");
   PeerMaps maps;
+  const CloudStream stream(input.fixed);
   const Eigen::Affine3d guess =
-      pipeline::centredGuess(input.fixed, input.moving, input.guess, input.prior);
+      pipeline::centredGuess(stream, input.moving, input.guess, input.prior);
   times.run("level", [&] {
-    pipeline::levelFixed(input.fixed, paper.level, maps.frames);
-    pipeline::levelMoving(input.fixed, input.moving, guess, paper.level, maps.frames);
+    pipeline::levelFixed(stream, paper.level, maps.frames);
+    pipeline::levelMoving(stream.facts(), input.moving, guess, paper.level, maps.frames);
   });
   times.run("grid", [&] {
     const map::Box2& fixed = maps.frames.fixed_footprint.box;
     const map::Box2& moving = maps.frames.moving_footprint.box;
-    pipeline::requirePlausibleExtents(input.fixed, input.moving, fixed, moving);
+    pipeline::requirePlausibleExtents(stream.facts(), input.moving, fixed, moving);
     maps.space = pipeline::searchSpace(moving, maps.frames, input.prior);
     const map::Box2 window =
         pipeline::reachableWindow(moving, maps.space, 2.0 * paper.signal.high_pass);
-    maps.fixed = map::makeGridMap(input.fixed, maps.frames.levelled_from_fixed,
+    maps.fixed = map::makeGridMap(stream, maps.frames.levelled_from_fixed,
                                   window.intersection(fixed), paper.grid);
     maps.moving =
         map::makeGridMap(input.moving, maps.frames.levelled_from_moving, moving, paper.grid);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/processor.hpp"
@@ -40,7 +41,10 @@ Cloud makeCloud(std::span<const Eigen::Vector3d> points, std::span<const Rgb> co
       (*columns.colour)[i] = {rgb + i, sizeof(Rgb), io::ScalarType::kUint8};
     }
   }
-  return io::assembleCloud(io::BinarySource(columns), name);
+  io::PointFile file;
+  file.name = name;
+  file.source = std::make_unique<io::BinarySource>(columns);
+  return io::assembleCloud(file);
 }
 
 void writePly(const std::filesystem::path& path, const Cloud& cloud) { io::writePly(path, cloud); }

@@ -180,7 +180,7 @@ nlohmann::ordered_json reportOf(const Cloud& fixed, const Cloud& moving, const T
   info.prior = guess;
   info.prior_source = "given by the caller";
   info.options = config::toJson(optionTable(in_force));
-  return report::registrationJson(fixed, moving, found, monitor, info);
+  return report::registrationJson(CloudStream(fixed), moving, found, monitor, info);
 }
 
 }  // namespace
@@ -223,7 +223,7 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
   for (const StageTime& time : monitor.times()) {
     result.times.push_back({std::string(nameOf(time.stage)), time.seconds});
   }
-  result.warnings = report::warningsOf(fixed, moving, monitor);
+  result.warnings = report::warningsOf(CloudStream(fixed), moving, monitor);
   result.record = std::move(record);
   if (result.record->found.transform && result.record->found.placed->followed) {
     result.deformation = deformationOf(moving, result.record);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "agricolmap/core/parallel.hpp"
@@ -24,21 +25,25 @@ class Places {
  public:
   using Chunk = std::vector<Eigen::Vector2d>;
 
-  Places(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local)
+  Places(const PointStream& cloud, const Eigen::Affine3d& levelled_from_local)
       : cloud_(cloud), levelled_from_local_(levelled_from_local) {}
 
-  /// `visit(part, chunk)` adds a chunk of places to what is summed.
+  /// `visit(part, chunk)` adds a chunk of places to what is summed. One pass.
   template <typename T, typename Visit>
   T sum(const T& zero, const Visit& visit) const {
-    return parallelSum<T>(cloud_.size(), kChunk, zero, [&](std::size_t begin, std::size_t end) {
-      T part = zero;
-      Chunk chunk(end - begin);
-      load(begin, chunk);
-      visit(part, chunk);
-      return part;
+    T total = zero;
+    cloud_.pass([&](const PointBatch& batch) {
+      total += parallelSum<T>(batch.size(), kChunk, zero, [&](std::size_t begin, std::size_t end) {
+        T part = zero;
+        Chunk chunk(end - begin);
+        load(batch.xyz.subspan(begin), chunk);
+        visit(part, chunk);
+        return part;
+      });
     });
+    return total;
   }
-  std::size_t size() const { return cloud_.size(); }
+  std::size_t size() const { return cloud_.facts().points; }
 
  private:
   static constexpr std::size_t kChunk = 1U << 14;
@@ -50,13 +55,13 @@ class Places {
   [[gnu::noipa]]
 #endif
   void
-  load(std::size_t begin, Chunk& chunk) const {
+  load(std::span<const Eigen::Vector3f> points, Chunk& chunk) const {
     for (std::size_t i = 0; i < chunk.size(); ++i) {
-      chunk[i] = (levelled_from_local_ * cloud_.xyz[begin + i].cast<double>()).head<2>();
+      chunk[i] = (levelled_from_local_ * points[i].cast<double>()).head<2>();
     }
   }
 
-  const Cloud& cloud_;
+  const PointStream& cloud_;
   const Eigen::Affine3d levelled_from_local_;
 };
 
@@ -186,9 +191,9 @@ double Footprint::spacing() const {
   return points == 0 ? 0.0 : std::sqrt(area / static_cast<double>(points));
 }
 
-Footprint footprintOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
+Footprint footprintOf(const PointStream& cloud, const Eigen::Affine3d& levelled_from_local) {
   Footprint result;
-  if (cloud.empty()) return result;
+  if (cloud.facts().points == 0) return result;
   const Places places(cloud, levelled_from_local);
   result.box = boundsOf(places, [](const Eigen::Vector2d&) { return true; });
   double cell = 0.0;
@@ -210,6 +215,10 @@ Footprint footprintOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_l
   }
   result.left_out = places.size() - result.points;
   return result;
+}
+
+Footprint footprintOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local) {
+  return footprintOf(CloudStream(cloud), levelled_from_local);
 }
 
 }  // namespace agricolmap::map

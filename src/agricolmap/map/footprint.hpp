@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
-#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/map/grid_map.hpp"
 
 namespace agricolmap::map {
@@ -26,6 +26,8 @@ struct Footprint {
 /// no more than a hundredth: a bird, a passer-by, points mismatched far away. Parts that hold more
 /// are the map's, however far apart, and in a cloud so sparse that its points are all on their own
 /// nothing is left out. Without such groups `box` is the bounds of all points.
+/// Two passes, and two more for each time that something is left out.
+Footprint footprintOf(const PointStream& cloud, const Eigen::Affine3d& levelled_from_local);
 Footprint footprintOf(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local);
 
 }  // namespace agricolmap::map

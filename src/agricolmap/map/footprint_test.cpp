@@ -93,7 +93,7 @@ TEST(Footprint, OfSparseAndTinyCloudsNothingIsLeftOut) {
     EXPECT_EQ(footprint.points, points);
     EXPECT_EQ(footprint.left_out, 0U);
   }
-  const Footprint none = footprintOf({}, kLevel);
+  const Footprint none = footprintOf(Cloud{}, kLevel);
   EXPECT_TRUE(none.box.isEmpty());
   EXPECT_EQ(none.spacing(), 0.0);
 }

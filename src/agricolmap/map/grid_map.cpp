@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -40,8 +41,10 @@ float excessGreen(Rgb colour, ExgKind kind) {
 
 namespace {
 
-constexpr int kBandRows = 16;
-constexpr std::size_t kChunk = 1U << 16;
+/// Rows that are summed together: few, so that the points of a batch, which mostly lie close
+/// together, are in many of them.
+constexpr int kBandRows = 4;
+constexpr std::size_t kChunk = 1U << 14;
 /// What the rasters of a GridMap take.
 constexpr double kCellBytes = 3 * sizeof(float) + sizeof(Rgb);
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
@@ -77,14 +80,7 @@ struct Located {
   float u;  ///< continuous column, cell 0 spans [0, 1)
   float v;  ///< continuous row
   float z;
-  std::uint32_t index;
-};
-
-/// The points of the window, grouped by bands of rows and in file order inside a band, so that
-/// bands can be summed in parallel with the same result on any number of threads.
-struct Bands {
-  std::vector<Located> points;
-  std::vector<std::size_t> begin;  ///< per band, plus the end
+  std::uint32_t index;  ///< in the batch
 };
 
 /// Continuous cell of a levelled point; false outside the map.
@@ -99,7 +95,7 @@ class Locator {
     shift_ = m.col(3).cast<float>();
   }
   bool locate(const Eigen::Vector3f& p, Located& out) const {
-    const Eigen::Vector3f q = linear_ * p + shift_;
+    const Eigen::Vector3f q(along(0, p), along(1, p), along(2, p));
     if (!(q.x() >= 0.0F && q.y() >= 0.0F && q.x() < cols_ && q.y() < rows_)) return false;
     out.u = q.x();
     out.v = q.y();
@@ -108,50 +104,76 @@ class Locator {
   }
 
  private:
+  /// Fused by hand: compilers choose one of several ways, and not the same at every place.
+  float along(int axis, const Eigen::Vector3f& p) const {
+    return std::fma(linear_(axis, 0), p.x(),
+                    std::fma(linear_(axis, 1), p.y(), linear_(axis, 2) * p.z())) +
+           shift_[axis];
+  }
+
   float rows_;
   float cols_;
   Eigen::Matrix3f linear_;
   Eigen::Vector3f shift_;
 };
 
-Bands sortIntoBands(const Cloud& cloud, const GridFrame& frame, const Locator& locator) {
-  const std::size_t bands = static_cast<std::size_t>((frame.rows + kBandRows - 1) / kBandRows);
-  const std::size_t chunks = (cloud.size() + kChunk - 1) / kChunk;
-  // Every point is located once: two computations of the same cell need not round alike.
-  std::vector<std::vector<Located>> inside(chunks);
-  std::vector<std::size_t> places(chunks * bands, 0);
-  const auto bandOf = [](const Located& p) { return static_cast<std::size_t>(p.v) / kBandRows; };
-  parallelFor(chunks, [&](std::size_t chunk) {
-    Located located{};
-    const std::size_t end = std::min(cloud.size(), (chunk + 1) * kChunk);
-    inside[chunk].reserve(end - chunk * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      if (!locator.locate(cloud.xyz[i], located)) continue;
-      located.index = static_cast<std::uint32_t>(i);
-      inside[chunk].push_back(located);
-      ++places[chunk * bands + bandOf(located)];
+/// The points of a batch in the window, grouped by bands of rows and in order inside a band, so
+/// that bands can be summed in parallel with the same result on any number of threads. Keeps its
+/// memory from one batch to the next.
+class Bands {
+ public:
+  Bands(const GridFrame& frame, const Eigen::Affine3d& levelled_from_local)
+      : locator_(frame, levelled_from_local),
+        bands_(static_cast<std::size_t>((frame.rows + kBandRows - 1) / kBandRows)),
+        begin_(bands_ + 1) {}
+
+  void sort(const PointBatch& batch) {
+    const std::size_t chunks = (batch.size() + kChunk - 1) / kChunk;
+    if (inside_.size() < chunks) inside_.resize(chunks);
+    places_.assign(chunks * bands_, 0);
+    // Every point is located once: two computations of the same cell need not round alike.
+    parallelFor(chunks, [&](std::size_t chunk) { locate(batch, chunk); });
+    // Prefix sums give every chunk its own places in every band.
+    std::size_t next = 0;
+    for (std::size_t band = 0; band < bands_; ++band) {
+      begin_[band] = next;
+      for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+        next += std::exchange(places_[chunk * bands_ + band], next);
+      }
     }
-  });
-  // Prefix sums give every chunk its own places in every band.
-  Bands result;
-  result.begin.resize(bands + 1);
-  std::size_t next = 0;
-  for (std::size_t band = 0; band < bands; ++band) {
-    result.begin[band] = next;
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-      next += std::exchange(places[chunk * bands + band], next);
+    begin_[bands_] = next;
+    if (points_.size() < next) points_.resize(next);
+    parallelFor(chunks, [&](std::size_t chunk) {
+      for (const Located& p : inside_[chunk]) points_[places_[chunk * bands_ + bandOf(p)]++] = p;
+    });
+  }
+  std::size_t count() const { return bands_; }
+  std::size_t points() const { return begin_[bands_]; }
+  std::span<const Located> band(std::size_t band) const {
+    return std::span(points_).subspan(begin_[band], begin_[band + 1] - begin_[band]);
+  }
+
+ private:
+  static std::size_t bandOf(const Located& p) { return static_cast<std::size_t>(p.v) / kBandRows; }
+  void locate(const PointBatch& batch, std::size_t chunk) {
+    Located located{};
+    inside_[chunk].clear();
+    const std::size_t end = std::min(batch.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      if (!locator_.locate(batch.xyz[i], located)) continue;
+      located.index = static_cast<std::uint32_t>(i);
+      inside_[chunk].push_back(located);
+      ++places_[chunk * bands_ + bandOf(located)];
     }
   }
-  result.begin[bands] = next;
-  result.points.resize(next);
-  parallelFor(chunks, [&](std::size_t chunk) {
-    for (const Located& p : inside[chunk]) {
-      result.points[places[chunk * bands + bandOf(p)]++] = p;
-    }
-    inside[chunk] = {};
-  });
-  return result;
-}
+
+  Locator locator_;
+  std::size_t bands_;
+  std::vector<std::vector<Located>> inside_;  ///< per chunk
+  std::vector<std::size_t> places_;           ///< per chunk and band
+  std::vector<Located> points_;
+  std::vector<std::size_t> begin_;  ///< per band, plus the end
+};
 
 /// Weighted sums of one cell.
 struct CellSum {
@@ -162,37 +184,76 @@ struct CellSum {
   std::array<float, 3> colour{};
 };
 
-void accumulateBand(const Cloud& cloud, const GridOptions& options, int first_row, int cols,
-                    const Located* begin, const Located* end, std::vector<CellSum>& sums) {
-  const float cells2_to_exponent =
-      static_cast<float>(-0.5 * options.cell * options.cell / (options.sigma * options.sigma));
-  for (const Located* p = begin; p != end; ++p) {
-    const int col = static_cast<int>(p->u);
-    const int row = static_cast<int>(p->v);
-    const float du = p->u - static_cast<float>(col) - 0.5F;
-    const float dv = p->v - static_cast<float>(row) - 0.5F;
-    const float distance2 = du * du + dv * dv;
-    const float weight = std::exp(std::max(kLeastExponent, cells2_to_exponent * distance2));
-    CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * cols + col];
-    sum.points += 1.0F;
-    sum.weight += weight;
-    sum.height += weight * p->z;
-    if (cloud.hasColour()) {
-      const Rgb colour = cloud.rgb[p->index];
-      sum.exg += weight * excessGreen(colour, options.exg);
-      sum.colour[0] += weight * colour.r;
-      sum.colour[1] += weight * colour.g;
-      sum.colour[2] += weight * colour.b;
+/// A map on its way. Every cell adds its points in their order, whatever the batches are.
+class Gridder {
+ public:
+  Gridder(const GridFrame& frame, const Eigen::Affine3d& levelled_from_local,
+          const GridOptions& options)
+      : frame_(frame),
+        options_(options),
+        bands_(frame, levelled_from_local),
+        sums_(bands_.count()) {}
+
+  void add(const PointBatch& batch) {
+    bands_.sort(batch);
+    points_ += bands_.points();
+    parallelFor(bands_.count(), [&](std::size_t band) {
+      const std::span<const Located> points = bands_.band(band);
+      if (points.empty()) return;
+      if (sums_[band].empty()) {
+        sums_[band].resize(static_cast<std::size_t>(kBandRows) * frame_.cols);
+      }
+      accumulate(points, batch.rgb, static_cast<int>(band) * kBandRows, sums_[band]);
+    });
+  }
+
+  GridMap finish() && {
+    GridMap map;
+    map.frame = frame_;
+    map.points = points_;
+    map.weight = Raster<float>(frame_.rows, frame_.cols);
+    map.height = Raster<float>(frame_.rows, frame_.cols);
+    map.exg = Raster<float>(frame_.rows, frame_.cols);
+    map.colour = Raster<Rgb>(frame_.rows, frame_.cols);
+    parallelFor(bands_.count(), [&](std::size_t band) {
+      writeBand(std::exchange(sums_[band], {}), static_cast<int>(band) * kBandRows, map);
+    });
+    map.filled = static_cast<std::size_t>(
+        std::count_if(map.weight.begin(), map.weight.end(), [](float w) { return w > 0.0F; }));
+    return map;
+  }
+
+ private:
+  void accumulate(std::span<const Located> points, std::span<const Rgb> colours, int first_row,
+                  std::vector<CellSum>& sums) const {
+    const float cells2_to_exponent = static_cast<float>(-0.5 * options_.cell * options_.cell /
+                                                        (options_.sigma * options_.sigma));
+    for (const Located& p : points) {
+      const int col = static_cast<int>(p.u);
+      const int row = static_cast<int>(p.v);
+      const float du = p.u - static_cast<float>(col) - 0.5F;
+      const float dv = p.v - static_cast<float>(row) - 0.5F;
+      const float distance2 = du * du + dv * dv;
+      const float weight = std::exp(std::max(kLeastExponent, cells2_to_exponent * distance2));
+      CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * frame_.cols + col];
+      sum.points += 1.0F;
+      sum.weight += weight;
+      sum.height += weight * p.z;
+      if (!colours.empty()) {
+        const Rgb colour = colours[p.index];
+        sum.exg += weight * excessGreen(colour, options_.exg);
+        sum.colour[0] += weight * colour.r;
+        sum.colour[1] += weight * colour.g;
+        sum.colour[2] += weight * colour.b;
+      }
     }
   }
-}
 
-void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMap& map) {
-  for (int row = first_row; row < first_row + rows; ++row) {
-    for (int col = 0; col < map.frame.cols; ++col) {
-      const CellSum& sum = sums[static_cast<std::size_t>(row - first_row) * map.frame.cols + col];
+  static void writeBand(const std::vector<CellSum>& sums, int first_row, GridMap& map) {
+    for (std::size_t cell = 0; cell < sums.size(); ++cell) {
+      const CellSum& sum = sums[cell];
       if (sum.points <= 0.0F) continue;
-      const std::size_t i = map.weight.index(row, col);
+      const std::size_t i = map.weight.index(first_row, 0) + cell;
       const float scale = 1.0F / sum.weight;
       map.weight[i] = sum.points;
       map.height[i] = scale * sum.height;
@@ -202,44 +263,35 @@ void writeBand(const std::vector<CellSum>& sums, int first_row, int rows, GridMa
                        static_cast<std::uint8_t>(scale * sum.colour[2] + 0.5F)};
     }
   }
-}
+
+  GridFrame frame_;
+  GridOptions options_;
+  Bands bands_;
+  std::vector<std::vector<CellSum>> sums_;  ///< of the bands that have points
+  std::size_t points_ = 0;
+};
 
 }  // namespace
 
-GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
+GridMap makeGridMap(const PointStream& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options) {
-  if (cloud.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError(fmt::format("{}: more than 2^32 points; split the cloud", cloud.name));
-  }
-  GridMap map;
-  map.frame = frameFor(window, options.cell);
-  const int rows = map.frame.rows;
-  const int cols = map.frame.cols;
-  const Bands bands = sortIntoBands(cloud, map.frame, Locator(map.frame, levelled_from_local));
-  map.points = bands.points.size();
+  Gridder gridder(frameFor(window, options.cell), levelled_from_local, options);
+  cloud.pass([&](const PointBatch& batch) { gridder.add(batch); });
+  GridMap map = std::move(gridder).finish();
   if (map.points == 0) {
     throw InputError(
         fmt::format(
             "{}: no point lies in the window that the initial guess gives; do both clouds use the "
             "same coordinate system?",
-            cloud.name),
+            cloud.facts().name),
         Remedy::kInitialGuess);
   }
-  map.weight = Raster<float>(rows, cols);
-  map.height = Raster<float>(rows, cols);
-  map.exg = Raster<float>(rows, cols);
-  map.colour = Raster<Rgb>(rows, cols);
-  parallelFor(bands.begin.size() - 1, [&](std::size_t band) {
-    const int first_row = static_cast<int>(band) * kBandRows;
-    const int band_rows = std::min(kBandRows, rows - first_row);
-    std::vector<CellSum> sums(static_cast<std::size_t>(band_rows) * cols);
-    accumulateBand(cloud, options, first_row, cols, bands.points.data() + bands.begin[band],
-                   bands.points.data() + bands.begin[band + 1], sums);
-    writeBand(sums, first_row, band_rows, map);
-  });
-  map.filled = static_cast<std::size_t>(
-      std::count_if(map.weight.begin(), map.weight.end(), [](float w) { return w > 0.0F; }));
   return map;
+}
+
+GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
+                    const Box2& window, const GridOptions& options) {
+  return makeGridMap(CloudStream(cloud), levelled_from_local, window, options);
 }
 
 GridOptions coarsened(const GridOptions& options, double spacing) {

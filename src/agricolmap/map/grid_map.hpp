@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/core/raster.hpp"
 
 namespace agricolmap::map {
@@ -57,8 +57,10 @@ using Box2 = Eigen::AlignedBox2d;
 GridOptions coarsened(const GridOptions& options, double spacing);
 
 /// Grids the points of `cloud` that lie in `window` after `levelled_from_local`. Cell borders lie
-/// on multiples of the cell size, so maps of one frame share their lattice. Throws InputError when
-/// no point lies in the window.
+/// on multiples of the cell size, so maps of one frame share their lattice. One pass, in which each
+/// cell takes 43 bytes; the map's take 15. Throws InputError when no point lies in the window.
+GridMap makeGridMap(const PointStream& cloud, const Eigen::Affine3d& levelled_from_local,
+                    const Box2& window, const GridOptions& options);
 GridMap makeGridMap(const Cloud& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options);
 

@@ -56,15 +56,25 @@ constexpr double kCellsBesideSteep = 0.5;
 
 /// Points spread over the cloud, in the guess frame: one of every `stride`, but not always the
 /// same one, which in a cloud in raster order may be that of the same columns in every row.
-LevelPoints samplePoints(const Cloud& cloud, const Eigen::Affine3d& guess_from_local) {
-  const std::size_t stride = std::max<std::size_t>(1, cloud.size() / kMaxSamples);
+LevelPoints samplePoints(const PointStream& cloud, const Eigen::Affine3d& guess_from_local) {
+  const std::size_t count = cloud.facts().points;
+  const std::size_t stride = std::max<std::size_t>(1, count / kMaxSamples);
   Random random(1);
+  std::size_t begin = 0;  // of the next stretch of points that one is taken from
+  const auto next = [&] {
+    const std::size_t one =
+        begin < count ? begin + random.below(std::min(stride, count - begin)) : count;
+    begin += stride;
+    return one;
+  };
   LevelPoints points;
-  points.reserve(cloud.size() / stride + 1);
-  for (std::size_t i = 0; i < cloud.size(); i += stride) {
-    const std::size_t one = i + random.below(std::min(stride, cloud.size() - i));
-    points.push_back(guess_from_local * cloud.xyz[one].cast<double>());
-  }
+  points.reserve(count / stride + 1);
+  std::size_t one = next();
+  cloud.pass([&](const PointBatch& batch) {
+    for (; one < batch.first + batch.size(); one = next()) {
+      points.push_back(guess_from_local * batch.xyz[one - batch.first].cast<double>());
+    }
+  });
   return points;
 }
 
@@ -84,7 +94,7 @@ Eigen::Affine3d uprightAbout(const Eigen::Vector3d& centre, const Eigen::Vector3
   return Eigen::Translation3d(centre) * turn * Eigen::Translation3d(-centre);
 }
 
-void requireExtent(const Cloud& cloud, const LevelPoints& points) {
+void requireExtent(const CloudFacts& cloud, const LevelPoints& points) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
   const Eigen::Vector3d size = box.sizes();
@@ -92,7 +102,7 @@ void requireExtent(const Cloud& cloud, const LevelPoints& points) {
     throw InputError(fmt::format(
         "{}: {} points span only {:.3g} x {:.3g} m horizontally, too little to be a map (at least "
         "{} m each way); check units and axes (x, y horizontal, z up, metres)",
-        cloud.name, cloud.size(), size.x(), size.y(), kMinExtent));
+        cloud.name, cloud.points, size.x(), size.y(), kMinExtent));
   }
 }
 
@@ -115,8 +125,9 @@ double tiltOf(const Eigen::Affine3d& levelled) {
 
 /// Levels `points` about `centre`, beginning with the frame `start`. The result's frame has its
 /// ground at the height of `centre`.
-Levelling levelFrom(const Eigen::Affine3d& start, const Cloud& cloud, const LevelPoints& points,
-                    const Eigen::Vector3d& centre, const LevelOptions& options) {
+Levelling levelFrom(const Eigen::Affine3d& start, const CloudFacts& cloud,
+                    const LevelPoints& points, const Eigen::Vector3d& centre,
+                    const LevelOptions& options) {
   Levelling result;
   Eigen::Affine3d& levelled = result.levelled_from_guess;
   levelled = start;
@@ -129,11 +140,9 @@ Levelling levelFrom(const Eigen::Affine3d& start, const Cloud& cloud, const Leve
       for (const Eigen::Vector3d& p : points) box.extend(p);
       throw InputError(fmt::format(
           "{}: only {} ground cells of {} m hold 3 points or more, of {} points over {:.3g} x "
-          "{:.3g} "
-          "m: are its coordinates metres? If they are, the cloud is too sparse or too small to "
-          "level "
-          "(reduce level.cell)",
-          cloud.name, low.size(), options.cell, cloud.size(), box.sizes().x(), box.sizes().y()));
+          "{:.3g} m: are its coordinates metres? If they are, the cloud is too sparse or too small "
+          "to level (reduce level.cell)",
+          cloud.name, low.size(), options.cell, cloud.points, box.sizes().x(), box.sizes().y()));
     }
     const GroundPlane plane = fitPlane(low, centre, options.cell);
     makeLevel(plane, centre, levelled);
@@ -200,10 +209,11 @@ Levelling levelUnderCanopy(const Levelling& found, const LevelPoints& points,
 
 }  // namespace
 
-Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local,
+Levelling levelCloud(const PointStream& stream, const Eigen::Affine3d& guess_from_local,
                      const LevelOptions& options) {
-  if (cloud.empty()) throw InputError(fmt::format("{}: the cloud has no points", cloud.name));
-  const LevelPoints points = samplePoints(cloud, guess_from_local);
+  const CloudFacts& cloud = stream.facts();
+  if (cloud.points == 0) throw InputError(fmt::format("{}: the cloud has no points", cloud.name));
+  const LevelPoints points = samplePoints(stream, guess_from_local);
   requireExtent(cloud, points);
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : points) centre += p;
@@ -234,6 +244,11 @@ Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local
   result.levelled_from_guess =
       Eigen::Translation3d(0.0, 0.0, -centre.z()) * result.levelled_from_guess;
   return result;
+}
+
+Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local,
+                     const LevelOptions& options) {
+  return levelCloud(CloudStream(cloud), guess_from_local, options);
 }
 
 }  // namespace agricolmap::map

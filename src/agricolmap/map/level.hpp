@@ -6,6 +6,7 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/options.hpp"
+#include "agricolmap/core/point_stream.hpp"
 
 namespace agricolmap::map {
 
@@ -30,9 +31,12 @@ struct Levelling {
   double support = 1.0;  ///< share of the cells that are within centimetres of such a plane
 };
 
-/// Fits the ground plane of `cloud` in the frame `guess_from_local` and levels it.
+/// Fits the ground plane of `cloud` in the frame `guess_from_local` and levels it, by points spread
+/// over it; one pass.
 /// Throws InputError for clouds without extent (one point, all points in one place, a line) and for
 /// planes steeper than `max_tilt_deg`.
+Levelling levelCloud(const PointStream& cloud, const Eigen::Affine3d& guess_from_local,
+                     const LevelOptions& options);
 Levelling levelCloud(const Cloud& cloud, const Eigen::Affine3d& guess_from_local,
                      const LevelOptions& options);
 

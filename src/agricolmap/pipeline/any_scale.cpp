@@ -9,15 +9,16 @@
 
 namespace agricolmap::pipeline {
 
-std::pair<Outcome, double> placeAtAnyScale(const Cloud& fixed, const Cloud& moving,
+std::pair<Outcome, double> placeAtAnyScale(const PointStream& fixed, const Cloud& moving,
                                            const Eigen::Affine3d& guess,
                                            const RegistrationOptions& options,
                                            const Locator& locator, Monitor& monitor,
                                            PairMaps& maps) {
   const correlation::MapSignals fixed_signals(maps.fixed, options.signal);
+  const Eigen::Affine3d centred = centredGuess(fixed, moving, guess, options.prior);
+  const Eigen::Vector3d middle = meanOf(moving);
   const auto mapAt = [&](double factor) {
-    mapMoving(fixed, moving, scaledGuess(fixed, moving, guess, options.prior, factor), options,
-              monitor, maps);
+    mapMoving(fixed.facts(), moving, scaledGuess(middle, centred, factor), options, monitor, maps);
   };
   std::optional<ScaleTrial> best;
   for (const double factor : scaleFactors(maps.moving_box, maps.fixed_box, options.prior)) {
@@ -27,7 +28,7 @@ std::pair<Outcome, double> placeAtAnyScale(const Cloud& fixed, const Cloud& movi
     best = ScaleTrial{factor, maps.frames, std::move(next)};
     if (best->outcome.verdict.status == verdict::Status::kAccepted) break;
   }
-  if (!best) throw fitsAtNoScale(fixed, moving);
+  if (!best) throw fitsAtNoScale(fixed.facts(), moving);
   if (!best->outcome.placed) return {std::move(best->outcome), 1.0};
   const double scale = scaleOf(*best, maps.space.scale_axes);
   mapAt(scale);

@@ -7,7 +7,7 @@ namespace {
 /// double, at the very end.
 class FrameChange {
  public:
-  FrameChange(const Cloud& fixed, const Cloud& moving, const PairFrames& frames)
+  FrameChange(const CloudFacts& fixed, const Cloud& moving, const PairFrames& frames)
       : fixed_(fixed), moving_(moving), frames_(frames) {}
 
   Eigen::Affine3d local(const Eigen::Affine3d& levelled) const {
@@ -18,12 +18,12 @@ class FrameChange {
   }
 
  private:
-  const Cloud& fixed_;
+  const CloudFacts& fixed_;
   const Cloud& moving_;
   const PairFrames& frames_;
 };
 
-Transform transformOf(const Cloud& fixed, const PairMaps& maps, const FrameChange& change,
+Transform transformOf(const CloudFacts& fixed, const PairMaps& maps, const FrameChange& change,
                       const Placed& placed, double scale) {
   const Eigen::Affine3d levelled = refine::liftPose(placed.pose, placed.heights);
   Transform transform;
@@ -62,7 +62,7 @@ std::vector<Alternative> alternativesTo(const Outcome& outcome, const PairMaps& 
 
 }  // namespace
 
-Registration compose(const Cloud& fixed, const Cloud& moving, PairMaps maps, Outcome outcome,
+Registration compose(const CloudFacts& fixed, const Cloud& moving, PairMaps maps, Outcome outcome,
                      double scale, const RegistrationOptions& options) {
   Registration result;
   if (outcome.placed) {

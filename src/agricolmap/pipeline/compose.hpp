@@ -6,7 +6,7 @@
 namespace agricolmap::pipeline {
 
 /// `scale`: what the moving file was enlarged by before it was gridded; 1 where its scale is known.
-Registration compose(const Cloud& fixed, const Cloud& moving, PairMaps maps, Outcome outcome,
+Registration compose(const CloudFacts& fixed, const Cloud& moving, PairMaps maps, Outcome outcome,
                      double scale, const RegistrationOptions& options);
 
 }  // namespace agricolmap::pipeline

@@ -139,10 +139,11 @@ TEST(TurnAlong, LaysALongStripAlongTheXAxisAndLeavesOthers) {
   };
   const Eigen::Affine3d guess = Eigen::Affine3d::Identity();
   const Cloud fixed;
-  EXPECT_NEAR(degrees(turnAlong(fixed, lineOf(60.0, 2.0), guess, {}, 24.0)), -30.0, 0.3);
-  EXPECT_EQ(turnAlong(fixed, lineOf(20.0, 2.0), guess, {}, 24.0), 0.0);
-  EXPECT_EQ(turnAlong(fixed, lineOf(60.0, 40.0), guess, {}, 24.0), 0.0);
-  EXPECT_EQ(turnAlong(fixed, lineOf(60.0, 2.0), guess, PriorUncertainty::none(), 24.0), 0.0);
+  EXPECT_NEAR(degrees(turnAlong(factsOf(fixed), lineOf(60.0, 2.0), guess, {}, 24.0)), -30.0, 0.3);
+  EXPECT_EQ(turnAlong(factsOf(fixed), lineOf(20.0, 2.0), guess, {}, 24.0), 0.0);
+  EXPECT_EQ(turnAlong(factsOf(fixed), lineOf(60.0, 40.0), guess, {}, 24.0), 0.0);
+  EXPECT_EQ(turnAlong(factsOf(fixed), lineOf(60.0, 2.0), guess, PriorUncertainty::none(), 24.0),
+            0.0);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace agricolmap::pipeline {
 namespace {
 
-void levelAndBound(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+void levelAndBound(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                    const RegistrationOptions& options, PairMaps& maps) {
   levelMoving(fixed, moving, guess, options.level, maps.frames);
   maps.moving_box = maps.frames.moving_footprint.box;
@@ -21,7 +21,7 @@ map::GridOptions cellsFor(const PairFrames& frames, const RegistrationOptions& o
   return map::coarsened(options.grid, spacing);
 }
 
-void gridFixed(const Cloud& fixed, const RegistrationOptions& options, PairMaps& maps) {
+void gridFixed(const PointStream& fixed, const RegistrationOptions& options, PairMaps& maps) {
   // Room for the high-pass.
   const map::Box2 window =
       options.prior.scale_unknown
@@ -40,20 +40,21 @@ void gridMoving(const Cloud& moving, PairMaps& maps) {
 
 }  // namespace
 
-PairMaps mapPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+PairMaps mapPair(const PointStream& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const RegistrationOptions& options, Monitor& monitor) {
   PairMaps maps;
   monitor.run(Stage::kLevel, [&] {
     const Eigen::Affine3d centred = centredGuess(fixed, moving, guess, options.prior);
     if (placesByPieces(options)) {
-      maps.frames.turn = turnAlong(fixed, moving, centred, options.prior, options.pieces.from);
+      maps.frames.turn =
+          turnAlong(fixed.facts(), moving, centred, options.prior, options.pieces.from);
     }
     levelFixed(fixed, options.level, maps.frames);
     maps.fixed_box = maps.frames.fixed_footprint.box;
-    levelAndBound(fixed, moving, centred, options, maps);
+    levelAndBound(fixed.facts(), moving, centred, options, maps);
   });
   if (!options.prior.scale_unknown) {
-    requirePlausibleExtents(fixed, moving, maps.fixed_box, maps.moving_box);
+    requirePlausibleExtents(fixed.facts(), moving, maps.fixed_box, maps.moving_box);
   }
   monitor.run(Stage::kGrid, [&] {
     maps.grid = cellsFor(maps.frames, options);
@@ -63,7 +64,7 @@ PairMaps mapPair(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d&
   return maps;
 }
 
-void mapMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+void mapMoving(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                const RegistrationOptions& options, Monitor& monitor, PairMaps& maps) {
   monitor.run(Stage::kLevel, [&] { levelAndBound(fixed, moving, guess, options, maps); });
   monitor.run(Stage::kGrid, [&] { gridMoving(moving, maps); });

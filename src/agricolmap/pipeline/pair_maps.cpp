@@ -32,7 +32,8 @@ struct PointSum {
 };
 
 /// In double and about the origins, so that UTM coordinates cancel before anything is float.
-Eigen::Affine3d localGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess) {
+Eigen::Affine3d localGuess(const CloudFacts& fixed, const Cloud& moving,
+                           const Eigen::Affine3d& guess) {
   return Eigen::Affine3d(Eigen::Translation3d(-fixed.origin) * guess *
                          Eigen::Translation3d(moving.origin));
 }
@@ -41,24 +42,33 @@ Eigen::AngleAxisd turned(double turn) { return {turn, Eigen::Vector3d::UnitZ()};
 
 }  // namespace
 
-Eigen::Vector3d meanOf(const Cloud& cloud) {
-  if (cloud.xyz.empty()) return cloud.origin;
-  const PointSum total =
-      parallelSum<PointSum>(cloud.size(), 1U << 16, {}, [&](std::size_t begin, std::size_t end) {
-        PointSum part;
-        for (std::size_t i = begin; i < end; ++i) part.sum += cloud.xyz[i].cast<double>();
-        return part;
-      });
-  return cloud.origin + total.sum / static_cast<double>(cloud.size());
+Eigen::Vector3d meanOf(const PointStream& cloud) {
+  const CloudFacts& facts = cloud.facts();
+  if (facts.points == 0) return facts.origin;
+  PointSum total;
+  cloud.pass([&](const PointBatch& batch) {
+    // Goes on where the batch before ended: one sum of all chunks, in their order.
+    total = parallelSum<PointSum>(batch.size(), 1U << 16, total,
+                                  [&](std::size_t begin, std::size_t end) {
+                                    PointSum part;
+                                    for (std::size_t i = begin; i < end; ++i) {
+                                      part.sum += batch.xyz[i].cast<double>();
+                                    }
+                                    return part;
+                                  });
+  });
+  return facts.origin + total.sum / static_cast<double>(facts.points);
 }
 
-Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                             const PriorUncertainty& uncertainty) {
+Eigen::Vector3d meanOf(const Cloud& cloud) { return meanOf(CloudStream(cloud)); }
+
+Eigen::Affine3d centredGuess(const PointStream& fixed, const Cloud& moving,
+                             const Eigen::Affine3d& guess, const PriorUncertainty& uncertainty) {
   if (!uncertainty.anywhere()) return guess;
   return Eigen::Translation3d(meanOf(fixed) - guess * meanOf(moving)) * guess;
 }
 
-double turnAlong(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+double turnAlong(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const PriorUncertainty& uncertainty, double from) {
   if (moving.xyz.empty() || uncertainty.anywhere() || uncertainty.heading_deg > kMostHeading) {
     return 0.0;
@@ -83,13 +93,13 @@ double turnAlong(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d&
   return -std::atan(along.y() / along.x());
 }
 
-void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames) {
+void levelFixed(const PointStream& fixed, const map::LevelOptions& options, PairFrames& frames) {
   frames.fixed = map::levelCloud(fixed, Eigen::Affine3d::Identity(), options);
   frames.levelled_from_fixed = turned(frames.turn) * frames.fixed.levelled_from_guess;
   frames.fixed_footprint = map::footprintOf(fixed, frames.levelled_from_fixed);
 }
 
-void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+void levelMoving(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const map::LevelOptions& options, PairFrames& frames) {
   const Eigen::Affine3d guess_local = localGuess(fixed, moving, guess);
   frames.moving = map::levelCloud(moving, guess_local, options);
@@ -98,8 +108,8 @@ void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d&
   frames.moving_footprint = map::footprintOf(moving, frames.levelled_from_moving);
 }
 
-void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map::Box2& fixed_box,
-                             const map::Box2& moving_box) {
+void requirePlausibleExtents(const CloudFacts& fixed, const Cloud& moving,
+                             const map::Box2& fixed_box, const map::Box2& moving_box) {
   if (moving_box.volume() <= kMaxAreaRatio * fixed_box.volume()) return;
   throw InputError(fmt::format(
       "{}: covers {:.3g} x {:.3g} m, far more than the fixed map {} with {:.3g} x {:.3g} m; are "

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/core/search_space.hpp"
 #include "agricolmap/map/footprint.hpp"
 #include "agricolmap/map/grid_map.hpp"
@@ -24,29 +24,30 @@ struct PairFrames {
   map::Footprint moving_footprint;
 };
 
-/// Mean of the cloud's points in its file's coordinates [m].
+/// Mean of the cloud's points in its file's coordinates [m]; one pass.
+Eigen::Vector3d meanOf(const PointStream& cloud);
 Eigen::Vector3d meanOf(const Cloud& cloud);
 
 /// Where the guess says nothing about the place, the middles of the clouds are laid together, so
 /// that all that follows counts from there, however far apart the files' coordinates are.
-Eigen::Affine3d centredGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                             const PriorUncertainty& uncertainty);
+Eigen::Affine3d centredGuess(const PointStream& fixed, const Cloud& moving,
+                             const Eigen::Affine3d& guess, const PriorUncertainty& uncertainty);
 
 /// The turn that lays a strip of more than `from` [m] along the x axis under the guess; none where
 /// it is shorter, hardly longer than wide, or the guess leaves its heading open.
-double turnAlong(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+double turnAlong(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const PriorUncertainty& uncertainty, double from);
 
 /// Levels the fixed cloud and finds where its points are.
-void levelFixed(const Cloud& fixed, const map::LevelOptions& options, PairFrames& frames);
+void levelFixed(const PointStream& fixed, const map::LevelOptions& options, PairFrames& frames);
 /// Levels the moving cloud under a guess (moving file → fixed file coordinates) and finds where its
 /// points are.
-void levelMoving(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+void levelMoving(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const map::LevelOptions& options, PairFrames& frames);
 
 /// Throws InputError when the moving map's bounds are far larger than the fixed map's.
-void requirePlausibleExtents(const Cloud& fixed, const Cloud& moving, const map::Box2& fixed_box,
-                             const map::Box2& moving_box);
+void requirePlausibleExtents(const CloudFacts& fixed, const Cloud& moving,
+                             const map::Box2& fixed_box, const map::Box2& moving_box);
 
 /// What is searched when the moving map has these bounds.
 SearchSpace searchSpace(const map::Box2& moving, const PairFrames& frames,

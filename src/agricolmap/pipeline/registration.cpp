@@ -73,12 +73,13 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
   return best;
 }
 
-Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                            const RegistrationOptions& chosen, Monitor& monitor,
-                            const Locator& locator, const std::vector<Eigen::Vector3d>& path) {
+Registration registerClouds(const PointStream& fixed, const Cloud& moving,
+                            const Eigen::Affine3d& guess, const RegistrationOptions& chosen,
+                            Monitor& monitor, const Locator& locator,
+                            const std::vector<Eigen::Vector3d>& path) {
   const StopScope scope(monitor.stop());
   const RegistrationOptions options = resolved(chosen);
-  requireUsable(fixed, moving, options, locator != nullptr);
+  requireUsable(fixed.facts(), factsOf(moving), options, locator != nullptr);
   PairMaps maps = mapPair(fixed, moving, guess, options, monitor);
   warnOfFlat(maps.fixed, maps.moving, options.signal, monitor);
   auto [outcome, scale] =
@@ -88,8 +89,14 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen
   // Only now: a search that found the place need not look for another one.
   if (options.require_heights) verdict::requireHeights(outcome.verdict);
   return monitor.run(Stage::kCompose, [&] {
-    return compose(fixed, moving, std::move(maps), std::move(outcome), scale, options);
+    return compose(fixed.facts(), moving, std::move(maps), std::move(outcome), scale, options);
   });
+}
+
+Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+                            const RegistrationOptions& options, Monitor& monitor,
+                            const Locator& locator, const std::vector<Eigen::Vector3d>& path) {
+  return registerClouds(CloudStream(fixed), moving, guess, options, monitor, locator, path);
 }
 
 }  // namespace agricolmap::pipeline

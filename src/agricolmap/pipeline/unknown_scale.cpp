@@ -38,11 +38,9 @@ std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed
   return factors;
 }
 
-Eigen::Affine3d scaledGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                            const PriorUncertainty& uncertainty, double factor) {
-  const Eigen::Affine3d centred = centredGuess(fixed, moving, guess, uncertainty);
-  const Eigen::Vector3d middle = meanOf(moving);
-  return centred * Eigen::Translation3d(middle) * Eigen::UniformScaling<double>(factor) *
+Eigen::Affine3d scaledGuess(const Eigen::Vector3d& middle, const Eigen::Affine3d& guess,
+                            double factor) {
+  return guess * Eigen::Translation3d(middle) * Eigen::UniformScaling<double>(factor) *
          Eigen::Translation3d(-middle);
 }
 

@@ -16,10 +16,9 @@ namespace agricolmap::pipeline {
 std::vector<double> scaleFactors(const map::Box2& moving, const map::Box2& fixed,
                                  const PriorUncertainty& uncertainty);
 
-/// The guess with the moving cloud made larger about its middle; where the guess leaves the place
-/// open, centred (see centredGuess).
-Eigen::Affine3d scaledGuess(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
-                            const PriorUncertainty& uncertainty, double factor);
+/// The guess with the moving cloud made larger about its middle (see meanOf).
+Eigen::Affine3d scaledGuess(const Eigen::Vector3d& middle, const Eigen::Affine3d& guess,
+                            double factor);
 
 /// What one factor led to.
 struct ScaleTrial {

@@ -7,10 +7,11 @@
 namespace agricolmap::pipeline {
 namespace {
 
-void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options) {
+void requireColours(const CloudFacts& fixed, const CloudFacts& moving,
+                    const RegistrationOptions& options) {
   if (options.geometry_only) return;
-  for (const Cloud* cloud : {&fixed, &moving}) {
-    if (!cloud->hasColour()) {
+  for (const CloudFacts* cloud : {&fixed, &moving}) {
+    if (!cloud->coloured) {
       throw InputError(
           fmt::format("{}: has no colours, which Excess Green needs{}; it can be registered by "
                       "heights alone",
@@ -23,8 +24,8 @@ void requireColours(const Cloud& fixed, const Cloud& moving, const RegistrationO
 
 }  // namespace
 
-void requireUsable(const Cloud& fixed, const Cloud& moving, const RegistrationOptions& options,
-                   bool located_otherwise) {
+void requireUsable(const CloudFacts& fixed, const CloudFacts& moving,
+                   const RegistrationOptions& options, bool located_otherwise) {
   requireColours(fixed, moving, options);
   if ((options.prior.anywhere() || options.prior.scale_unknown) && !located_otherwise &&
       options.association == AssociationKind::kFlow) {
@@ -56,7 +57,7 @@ void warnOfFlat(const map::GridMap& fixed, const map::GridMap& moving,
   }
 }
 
-InputError fitsAtNoScale(const Cloud& fixed, const Cloud& moving) {
+InputError fitsAtNoScale(const CloudFacts& fixed, const Cloud& moving) {
   return InputError(fmt::format(
       "{}: at no scale between 0.1 and 10 does it fit into the fixed map {} and still hold more "
       "than a few plants",

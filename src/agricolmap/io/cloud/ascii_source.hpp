@@ -53,6 +53,7 @@ class AsciiSource : public PointSource {
   ColourKind colourKind() const override { return layout_.colour; }
   /// Text keeps all its digits.
   bool floatCoordinates() const override { return false; }
+  bool dear() const override { return true; }
   /// Lines with words on them after the last point.
   std::size_t extraLines() const { return extra_lines_; }
 

@@ -89,7 +89,8 @@ TEST_F(MoveFile, PlyKeepsAllButCoordinatesAndNormals) {
     std::string wanted = plyOf<double>("double", expected, big, faces);
     const std::size_t body = wanted.find("end_header\n") + 11;
     const std::size_t length = 1 + 3 * 8 + 4 + 2 + 12;
-    const Eigen::Vector3d up = someAffine({}).linear().inverse().transpose().col(2);
+    const Eigen::Vector3d up =
+        someAffine(Eigen::Vector3d::Zero()).linear().inverse().transpose().col(2);
     std::string normal;
     const Eigen::Vector3f twice = (2.0 * up.normalized()).cast<float>();
     for (int c = 0; c < 3; ++c) append(normal, twice[c], big);

@@ -161,11 +161,11 @@ class PcdMove {
     pcdBytes(header_, data.size(), name_);
     const RecordLayout same(fields_, points_, false, false);
     const PointMover mover(move_, samplesOf(same, data.data(), header_.points));
-    file_.forget();
+    file_.release();
     sink.write(headOf(mover));
     const RecordLayout layout(fields_, points_, as_double_, false);
     return writeMoved(layout, mover, data.data(), header_.points, sink, progress,
-                      [&] { file_.forget(); });
+                      [&] { file_.release(); });
   }
 
   std::string name_;

@@ -128,7 +128,7 @@ class PlyMove {
     for (; !rest.empty(); rest.remove_prefix(std::min(kAtOnce, rest.size()))) {
       throwIfInterrupted();
       sink.write(rest.substr(0, kAtOnce));
-      file_.forget();
+      file_.release();
     }
   }
 
@@ -172,12 +172,12 @@ class PlyMove {
     const std::size_t count = vertices().count;
     const RecordLayout same(fields_, points_, false, swap);
     const PointMover mover(move_, samplesOf(same, first, count));
-    file_.forget();
+    file_.release();
     writeHead(mover, sink);
     sink.write(body_.substr(0, before));
     const RecordLayout layout(fields_, points_, as_double_, swap);
     const MoveTally tally =
-        writeMoved(layout, mover, first, count, sink, progress, [&] { file_.forget(); });
+        writeMoved(layout, mover, first, count, sink, progress, [&] { file_.release(); });
     writeRest(body_.substr(before + count * layout.lengthBefore()), sink);
     return tally;
   }

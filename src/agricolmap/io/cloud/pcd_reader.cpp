@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
@@ -100,8 +101,18 @@ BinaryColumns columnsOf(const PcdHeader& header, const Roles& roles, const std::
   return columns;
 }
 
-Cloud readAscii(const PcdHeader& header, const Roles& roles, std::string_view text,
-                const std::string& name, const CoordinateMap* map) {
+/// Points that were decompressed as a whole.
+class DecompressedSource : public BinarySource {
+ public:
+  DecompressedSource(std::vector<std::byte> bytes, const BinaryColumns& columns)
+      : BinarySource(columns), bytes_(std::move(bytes)) {}
+
+ private:
+  std::vector<std::byte> bytes_;  ///< what the columns look into
+};
+
+void openAscii(const PcdHeader& header, const Roles& roles, std::string_view text,
+               PointFile& file) {
   using Use = AsciiColumn::Use;
   const auto use_of = [&](std::size_t field) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -113,7 +124,7 @@ Cloud readAscii(const PcdHeader& header, const Roles& roles, std::string_view te
     return roles.packed == field ? Use::kPacked : Use::kSkip;
   };
   AsciiLayout layout;
-  layout.name = name;
+  layout.name = file.name;
   layout.text = text;
   layout.points = header.points;
   layout.line_end = header.line_end;
@@ -125,34 +136,31 @@ Cloud readAscii(const PcdHeader& header, const Roles& roles, std::string_view te
     const auto type = [&](std::size_t c) { return header.fields[(*roles.colour)[c]].type; };
     layout.colour = colourKindOf({type(0), type(1), type(2)});
   }
-  const AsciiSource source(std::move(layout));
-  Cloud cloud = assembleCloud(source, name, map);
-  warnOfRest(source.extraLines(), "lines", cloud);
-  return cloud;
+  auto source = std::make_unique<AsciiSource>(std::move(layout));
+  warnOfRest(source->extraLines(), "lines", file);
+  file.source = std::move(source);
 }
 
-Cloud readPoints(const PcdHeader& header, const Roles& roles, std::string_view body,
-                 const std::string& name, const CoordinateMap* map) {
+void openData(const PcdHeader& header, const Roles& roles, std::string_view body, PointFile& file) {
   const std::span<const std::byte> data = std::as_bytes(std::span(body));
   switch (header.encoding) {
     case PcdEncoding::kAscii:
-      return readAscii(header, roles, body, name, map);
+      openAscii(header, roles, body, file);
+      return;
     case PcdEncoding::kBinary: {
-      const std::uint64_t used = pcdBytes(header, data.size(), name);
-      Cloud cloud =
-          assembleCloud(BinarySource(columnsOf(header, roles, data.data(), true)), name, map);
-      warnOfRest(data.size() - used, "bytes", cloud);
-      return cloud;
+      const std::uint64_t used = pcdBytes(header, data.size(), file.name);
+      file.source = std::make_unique<BinarySource>(columnsOf(header, roles, data.data(), true));
+      warnOfRest(data.size() - used, "bytes", file);
+      return;
     }
     case PcdEncoding::kCompressed:
       break;
   }
   std::size_t rest = 0;
-  const std::vector<std::byte> plain = decompressPcd(header, data, name, rest);
-  Cloud cloud =
-      assembleCloud(BinarySource(columnsOf(header, roles, plain.data(), false)), name, map);
-  warnOfRest(rest, "bytes", cloud);
-  return cloud;
+  std::vector<std::byte> plain = decompressPcd(header, data, file.name, rest);
+  const BinaryColumns columns = columnsOf(header, roles, plain.data(), false);
+  file.source = std::make_unique<DecompressedSource>(std::move(plain), columns);
+  warnOfRest(rest, "bytes", file);
 }
 
 /// Whether a pose is none: at zero, not turned.
@@ -170,27 +178,28 @@ Eigen::Affine3d poseOf(const std::vector<double>& v) {
   return Eigen::Translation3d(v[0], v[1], v[2]) * attitude.normalized();
 }
 
-void warnOfViewpoint(const PcdHeader& header, Cloud& cloud) {
+void warnOfViewpoint(const PcdHeader& header, PointFile& file) {
   constexpr std::size_t kNumbers = 7;
   const std::vector<double>& v = header.viewpoint;
   if (v.size() != kNumbers || isIdentity(v)) return;
-  cloud.warnings.push_back(fmt::format(
+  file.notes.push_back(fmt::format(
       "{}: its VIEWPOINT is not applied, as programs differ in what they mean by it: points are "
       "taken as stored. If they are as the sensor saw them, write this line into an offset.xyz "
       "beside it: {}",
-      cloud.name, offsetLine(poseOf(v))));
+      file.name, offsetLine(poseOf(v))));
 }
 
 }  // namespace
 
-Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+PointFile openPcd(const MappedFile& file, const std::string& name, const ReadOptions& options) {
   const std::string_view text = withoutMark(file.text());
   const PcdHeader header = parsePcdHeader(text, name);
-  Cloud cloud = readPoints(header, findRoles(header, name, options), text.substr(header.bytes),
-                           name, options.map);
-  cloud.fields = fieldsOf(header);
-  warnOfViewpoint(header, cloud);
-  return cloud;
+  PointFile opened;
+  opened.name = name;
+  opened.fields = fieldsOf(header);
+  openData(header, findRoles(header, name, options), text.substr(header.bytes), opened);
+  warnOfViewpoint(header, opened);
+  return opened;
 }
 
 }  // namespace agricolmap::io

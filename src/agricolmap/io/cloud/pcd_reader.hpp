@@ -1,14 +1,12 @@
-// Reading PCD; use `readCloud`.
+// Reading PCD; use `readCloud` or `streamCloud`.
 #pragma once
 
 #include <string>
 
-#include "agricolmap/core/cloud.hpp"
-#include "agricolmap/io/cloud/read_options.hpp"
-#include "agricolmap/io/text/mapped_file.hpp"
+#include "agricolmap/io/cloud/point_source.hpp"
 
 namespace agricolmap::io {
 
-Cloud readPcd(const MappedFile& file, const std::string& name, const ReadOptions& options);
+PointFile openPcd(const MappedFile& file, const std::string& name, const ReadOptions& options);
 
 }  // namespace agricolmap::io

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
@@ -143,11 +145,14 @@ class Walker {
 /// Binary vertices with lists among their properties.
 class ListedSource : public PointSource {
  public:
-  ListedSource(const VertexLayout& layout, std::span<const std::byte> data, bool swap,
-               const std::string& name)
-      : layout_(layout),
+  /// `layout` points into `header`, which is kept.
+  ListedSource(std::shared_ptr<const PlyHeader> header, const VertexLayout& layout,
+               std::span<const std::byte> data, bool swap, const std::string& name)
+      : header_(std::move(header)),
+        name_(name),
+        layout_(layout),
         swap_(swap),
-        walker_(*layout.vertex, data.data() + data.size(), swap, name) {
+        walker_(*layout.vertex, data.data() + data.size(), swap, name_) {
     const std::byte* from = data.data();
     for (std::uint64_t i = 0; i < layout.vertex->count; ++i) {
       if (i % kChunk == 0) {
@@ -199,6 +204,8 @@ class ListedSource : public PointSource {
 
  private:
   static constexpr std::size_t kChunk = 1U << 12;
+  std::shared_ptr<const PlyHeader> header_;
+  std::string name_;
   VertexLayout layout_;
   bool swap_;
   Walker walker_;
@@ -253,11 +260,11 @@ std::span<const std::byte> skipTo(const PlyHeader& header, const PlyElement& ver
   return data;
 }
 
-Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
-                 std::span<const std::byte> data, const std::string& name,
-                 const CoordinateMap* map) {
-  const bool swap = header.format == PlyFormat::kBigEndian;
-  data = skipTo(header, *layout.vertex, data, swap, name);
+void openBinary(const std::shared_ptr<const PlyHeader>& header, const VertexLayout& layout,
+                std::span<const std::byte> data, PointFile& file) {
+  const std::string& name = file.name;
+  const bool swap = header->format == PlyFormat::kBigEndian;
+  data = skipTo(*header, *layout.vertex, data, swap, name);
   const PlyElement& vertex = *layout.vertex;
   const std::size_t each = vertex.fixedBytes();
   if (vertex.count > data.size() / each) {
@@ -268,15 +275,14 @@ Cloud readBinary(const PlyHeader& header, const VertexLayout& layout,
         data.size() / each));
   }
   if (vertex.hasLists()) {
-    const ListedSource source(layout, data, swap, name);
-    Cloud cloud = assembleCloud(source, name, map);
-    const auto rest = static_cast<std::size_t>(data.data() + data.size() - source.end());
-    if (isLast(header, vertex)) warnOfRest(rest, "bytes", cloud);
-    return cloud;
+    auto source = std::make_unique<ListedSource>(header, layout, data, swap, name);
+    const auto rest = static_cast<std::size_t>(data.data() + data.size() - source->end());
+    if (isLast(*header, vertex)) warnOfRest(rest, "bytes", file);
+    file.source = std::move(source);
+    return;
   }
-  Cloud cloud = assembleCloud(BinarySource(columnsOf(layout, data.data(), swap)), name, map);
-  if (isLast(header, vertex)) warnOfRest(data.size() - vertex.count * each, "bytes", cloud);
-  return cloud;
+  file.source = std::make_unique<BinarySource>(columnsOf(layout, data.data(), swap));
+  if (isLast(*header, vertex)) warnOfRest(data.size() - vertex.count * each, "bytes", file);
 }
 
 std::vector<AsciiColumn> asciiColumns(const VertexLayout& layout) {
@@ -294,8 +300,8 @@ std::vector<AsciiColumn> asciiColumns(const VertexLayout& layout) {
   return columns;
 }
 
-Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string_view text,
-                const std::string& name, const CoordinateMap* map) {
+void openAscii(const PlyHeader& header, const VertexLayout& layout, std::string_view text,
+               PointFile& file) {
   for (const PlyElement* e = header.elements.data(); e != layout.vertex; ++e) {
     for (std::uint64_t i = 0; i < e->count && !e->properties.empty(); ++i) {
       while (!text.empty() && splitWords(takeLine(text, header.line_end)).empty()) {
@@ -303,35 +309,40 @@ Cloud readAscii(const PlyHeader& header, const VertexLayout& layout, std::string
       if (text.empty()) break;  // counted with the vertices' lines
     }
   }
-  const AsciiSource source({name, text, layout.vertex->count, asciiColumns(layout),
-                            layout.colourKind(), header.line_end, isLast(header, *layout.vertex)});
-  Cloud cloud = assembleCloud(source, name, map);
-  if (isLast(header, *layout.vertex)) warnOfRest(source.extraLines(), "lines", cloud);
-  return cloud;
+  const bool last = isLast(header, *layout.vertex);
+  auto source = std::make_unique<AsciiSource>(AsciiLayout{file.name, text, layout.vertex->count,
+                                                          asciiColumns(layout), layout.colourKind(),
+                                                          header.line_end, last});
+  if (last) warnOfRest(source->extraLines(), "lines", file);
+  file.source = std::move(source);
 }
 
 }  // namespace
 
-Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+PointFile openPly(const MappedFile& file, const std::string& name, const ReadOptions& options) {
   const std::string_view text = withoutMark(file.text());
-  const PlyHeader header = parsePlyHeader(text, name);
-  const VertexLayout layout = vertexLayout(header, name, options);
-  const std::string_view body = text.substr(header.bytes);
-  Cloud cloud = header.format == PlyFormat::kAscii
-                    ? readAscii(header, layout, body, name, options.map)
-                    : readBinary(header, layout, std::as_bytes(std::span(body)), name, options.map);
-  cloud.fields = fieldsOf(*layout.vertex);
+  const auto header = std::make_shared<const PlyHeader>(parsePlyHeader(text, name));
+  const VertexLayout layout = vertexLayout(*header, name, options);
+  const std::string_view body = text.substr(header->bytes);
+  PointFile opened;
+  opened.name = name;
+  opened.fields = fieldsOf(*layout.vertex);
+  if (header->format == PlyFormat::kAscii) {
+    openAscii(*header, layout, body, opened);
+  } else {
+    openBinary(header, layout, std::as_bytes(std::span(body)), opened);
+  }
   if (layout.partly_coloured) {
-    cloud.warnings.push_back(fmt::format(
+    opened.notes.push_back(fmt::format(
         "{}: its colours are incomplete (red, green and blue are needed); ignored", name));
   }
   if (!layout.colour && findOne(*layout.vertex, "f_dc_0", name)) {
-    cloud.warnings.push_back(fmt::format(
+    opened.notes.push_back(fmt::format(
         "{}: its points are Gaussian splats: their centres are not measured, and their colours "
         "(f_dc_0 ...) are not read; take the coloured point cloud made from the same pictures",
         name));
   }
-  return cloud;
+  return opened;
 }
 
 }  // namespace agricolmap::io

@@ -1,14 +1,12 @@
-// Reading PLY; use `readCloud`.
+// Reading PLY; use `readCloud` or `streamCloud`.
 #pragma once
 
 #include <string>
 
-#include "agricolmap/core/cloud.hpp"
-#include "agricolmap/io/cloud/read_options.hpp"
-#include "agricolmap/io/text/mapped_file.hpp"
+#include "agricolmap/io/cloud/point_source.hpp"
 
 namespace agricolmap::io {
 
-Cloud readPly(const MappedFile& file, const std::string& name, const ReadOptions& options);
+PointFile openPly(const MappedFile& file, const std::string& name, const ReadOptions& options);
 
 }  // namespace agricolmap::io

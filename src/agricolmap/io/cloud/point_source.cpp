@@ -1,5 +1,7 @@
 #include "agricolmap/io/cloud/point_source.hpp"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -104,6 +106,12 @@ std::string fieldList(const std::vector<std::string>& names) {
     for (const char c : name) list += c >= ' ' && c <= '~' ? c : '?';
   }
   return list;
+}
+
+void warnOfRest(std::size_t count, std::string_view unit, PointFile& file) {
+  if (count == 0) return;
+  file.notes.push_back(
+      fmt::format("{}: {} {} after the last point, ignored", file.name, count, unit));
 }
 
 ColourKind BinarySource::colourKind() const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/io/cloud/read_options.hpp"
+#include "agricolmap/io/text/mapped_file.hpp"
 
 namespace agricolmap::io {
 
@@ -62,6 +64,9 @@ class PointSource {
   virtual ColourKind colourKind() const = 0;
   /// Whether coordinates are stored as 32-bit floats, which are coarse far from zero.
   virtual bool floatCoordinates() const = 0;
+  /// Whether decoding takes longer than writing what comes of it and reading that again: what is
+  /// compressed, text, reprojected. Else chunks have few points.
+  virtual bool dear() const { return false; }
 };
 
 /// One value per point, `stride` bytes apart.
@@ -96,6 +101,18 @@ class BinarySource : public PointSource {
   BinaryColumns columns_;
 };
 
+/// A cloud's file, opened: its points, which look into it, and what is to be said beside them.
+struct PointFile {
+  std::string name;
+  std::unique_ptr<PointSource> source;
+  std::string fields;                 ///< what it has of each point
+  std::vector<std::string> warnings;  ///< of its header
+  std::vector<std::string> notes;     ///< warnings to stand behind those of its points
+  bool black_is_none = false;         ///< colours that are black in all points stand for no colours
+  /// What the points lie in, to be released now and then; none where they are in memory.
+  const MappedFile* file = nullptr;
+};
+
 /// The kind of three stored colour channels.
 ColourKind colourKindOf(const std::array<ScalarType, 3>& types);
 
@@ -105,19 +122,22 @@ double loadScalar(const std::byte* from, ScalarType type, bool swap);
 /// No field is so large: what lies farther from the origin is a placeholder or a mismatch [m].
 inline constexpr double kMaxFromOrigin = 2e4;
 
-/// Reads all points, through `map` if there is one. The origin is the first point that says where
+/// Reads all points. The origin is the first point that says where
 /// the cloud is, rounded to whole metres, or, where that lies more than 1 km off, the median of
 /// about 1000 points spread over the file. Points with a coordinate or colour that is not finite,
 /// and those more than 20 km from the origin along an axis, are dropped and counted, as are those
 /// that are withheld. Throws InputError naming `name` when no point is left, when more than half
 /// are too far off, or the colours fit no known range.
-Cloud assembleCloud(const PointSource& source, const std::string& name,
-                    const CoordinateMap* map = nullptr);
+Cloud assembleCloud(const PointFile& file);
+
+/// Opens a cloud's file, told by its content; `file` and `options.map` must outlive it. Throws
+/// InputError.
+PointFile openPoints(const MappedFile& file, const std::string& name, const ReadOptions& options);
 
 /// What a file has of each point as one text, printable and not too long.
 std::string fieldList(const std::vector<std::string>& names);
 
-/// Adds a warning to the cloud where `count` bytes or lines (`unit`) follow its last point.
-void warnOfRest(std::size_t count, std::string_view unit, Cloud& cloud);
+/// Adds a note where `count` bytes or lines (`unit`) follow the last point.
+void warnOfRest(std::size_t count, std::string_view unit, PointFile& file);
 
 }  // namespace agricolmap::io

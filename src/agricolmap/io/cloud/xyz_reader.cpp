@@ -1,14 +1,14 @@
 #include "agricolmap/io/cloud/xyz_reader.hpp"
 
-#include <fmt/format.h>
+#include <memory>
+#include <utility>
 
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/xyz_columns.hpp"
 #include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
 
-Cloud readXyz(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+PointFile openXyz(const MappedFile& file, const std::string& name, const ReadOptions& options) {
   const std::string_view text = withoutMark(file.text());
   const XyzColumns found = xyzColumns(text, name);
   AsciiLayout layout;
@@ -26,11 +26,13 @@ Cloud readXyz(const MappedFile& file, const std::string& name, const ReadOptions
       if (column.use >= AsciiColumn::Use::kRed) column.use = AsciiColumn::Use::kSkip;
     }
   }
-  const AsciiSource source(std::move(layout));
-  Cloud cloud = assembleCloud(source, name, options.map);
-  warnOfRest(source.extraLines(), "lines", cloud);
-  cloud.fields = found.fields;
-  return cloud;
+  PointFile opened;
+  opened.name = name;
+  opened.fields = found.fields;
+  auto source = std::make_unique<AsciiSource>(std::move(layout));
+  warnOfRest(source->extraLines(), "lines", opened);
+  opened.source = std::move(source);
+  return opened;
 }
 
 }  // namespace agricolmap::io

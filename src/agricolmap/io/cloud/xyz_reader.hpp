@@ -1,15 +1,14 @@
-// Reading clouds that are lines of text, without a header that says what they are.
+// Reading clouds that are lines of text, without a header that says what they are; use `readCloud`
+// or `streamCloud`.
 #pragma once
 
 #include <string>
 
-#include "agricolmap/core/cloud.hpp"
-#include "agricolmap/io/cloud/read_options.hpp"
-#include "agricolmap/io/text/mapped_file.hpp"
+#include "agricolmap/io/cloud/point_source.hpp"
 
 namespace agricolmap::io {
 
-/// Reads a cloud as xyzColumns says. Throws InputError.
-Cloud readXyz(const MappedFile& file, const std::string& name, const ReadOptions& options);
+/// As xyzColumns says. Throws InputError.
+PointFile openXyz(const MappedFile& file, const std::string& name, const ReadOptions& options);
 
 }  // namespace agricolmap::io

@@ -256,17 +256,16 @@ TEST_F(CrsTest, FilesOfManyWriters) {
   EXPECT_FALSE(crsOf(files / "simple.las").crs);
 }
 
-TEST(CrsTest, OpenDroneMapsFilesAreUnderstoodAndNamed) {
-  const TempDir dir;
-  const auto cloud = dir.write("field.ply", "ply\n");
+TEST_F(CrsTest, OpenDroneMapsFilesAreUnderstoodAndNamed) {
+  const auto cloud = folder_.write("field.ply", "ply\n");
   const std::string proj =
-      dir.write("proj.txt", "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs");
+      folder_.write("proj.txt", "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs");
   const FileCrs silent = crsOf(cloud);
   EXPECT_FALSE(silent.crs);
   ASSERT_EQ(silent.warnings.size(), 1U);
   EXPECT_NE(silent.warnings[0].find("proj.txt beside it is not asked"), std::string::npos);
   EXPECT_EQ(crsOf(cloud, proj).crs.value().horizontal_unit, 1.0);
-  const std::string coords = dir.write("coords.txt", "WGS84 UTM 33S\n500000 5400000\n1 2 3\n");
+  const std::string coords = folder_.write("coords.txt", "WGS84 UTM 33S\n500000 5400000\n1 2 3\n");
   EXPECT_EQ(crsOf(cloud, coords).crs.value().name, "WGS 84 / UTM zone 33S");
   EXPECT_EQ(crsOf(cloud, "WGS84 UTM 32N").crs.value().name, "WGS 84 / UTM zone 32N");
   EXPECT_THROW(crsOf(cloud, "WGS84 UTM 99N"), UsageError);

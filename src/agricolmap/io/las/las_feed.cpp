@@ -74,7 +74,7 @@ class FileFeed : public LasFeed {
 
   std::uint64_t points() const override { return header_.points; }
   std::size_t chunks() const override { return source_->chunks(); }
-  void forget() const override { file_.forget(); }
+  void forget() const override { file_.release(); }
 
   void load(std::size_t chunk, std::vector<std::byte>& records) const override {
     const std::size_t length = header_.layout.length;

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <utility>
 
-#include "agricolmap/io/cloud/point_source.hpp"
 #include "agricolmap/io/las/las_header.hpp"
 #include "agricolmap/io/las/las_points.hpp"
 
@@ -16,21 +15,24 @@ namespace {
 
 class LasSource : public PointSource {
  public:
-  LasSource(const LasHeader& header, const LasPoints& points, bool colours)
-      : header_(header), points_(points), colours_(colours && header.layout.rgb) {}
+  LasSource(LasHeader header, std::unique_ptr<LasPoints> points, bool colours)
+      : header_(std::move(header)),
+        points_(std::move(points)),
+        colours_(colours && header_.layout.rgb) {}
 
   std::size_t points() const override { return static_cast<std::size_t>(header_.points); }
-  std::size_t chunks() const override { return points_.chunks(); }
-  std::size_t firstPoint(std::size_t chunk) const override { return points_.firstPoint(chunk); }
+  std::size_t chunks() const override { return points_->chunks(); }
+  std::size_t firstPoint(std::size_t chunk) const override { return points_->firstPoint(chunk); }
   ColourKind colourKind() const override {
     return colours_ ? ColourKind::kWideInteger : ColourKind::kNone;
   }
   bool floatCoordinates() const override { return false; }
+  bool dear() const override { return header_.compressed; }
 
   void decode(std::size_t chunk, const Sink& sink) const override {
     PointBlock block;
     const LasWanted wanted = colours_ ? LasWanted::kPlaceColours : LasWanted::kPlace;
-    points_.decode(chunk, wanted, [&](const std::byte* records, std::size_t count) {
+    points_->decode(chunk, wanted, [&](const std::byte* records, std::size_t count) {
       for (std::size_t i = 0; i < count; ++i) {
         take(records + i * header_.layout.length, block);
         if (block.count < PointBlock::kCapacity) continue;
@@ -59,19 +61,10 @@ class LasSource : public PointSource {
     }
   }
 
-  const LasHeader& header_;
-  const LasPoints& points_;
+  LasHeader header_;
+  std::unique_ptr<LasPoints> points_;
   bool colours_;
 };
-
-/// What scanners without a camera write where the format has colours.
-void dropBlackColours(Cloud& cloud) {
-  const bool black = std::all_of(cloud.rgb.begin(), cloud.rgb.end(),
-                                 [](const Rgb& colour) { return colour == Rgb{}; });
-  if (!cloud.hasColour() || !black) return;
-  cloud.rgb.clear();
-  cloud.warnings.push_back(fmt::format("{}: all its colours are black; taken as none", cloud.name));
-}
 
 /// The names that the record "extra bytes" gives to what it describes.
 std::string extraNames(const LasHeader& header) {
@@ -111,20 +104,23 @@ bool saysDegrees(const LasHeader& header) {
 
 }  // namespace
 
-Cloud readLas(const MappedFile& file, const std::string& name, const ReadOptions& options) {
-  const LasHeader header = parseLasHeader(file.bytes(), name);
-  const auto points = lasPoints(file.bytes(), header, name);
-  Cloud cloud = assembleCloud(LasSource(header, *points, options.colours), name, options.map);
-  dropBlackColours(cloud);
-  cloud.fields = lasFields(header.layout);
+PointFile openLas(const MappedFile& file, const std::string& name, const ReadOptions& options) {
+  LasHeader header = parseLasHeader(file.bytes(), name);
+  auto points = lasPoints(file.bytes(), header, name);
+  PointFile opened;
+  opened.name = name;
+  opened.fields = lasFields(header.layout);
   const std::string extra = extraNames(header);
-  if (!extra.empty()) cloud.fields += fmt::format(" ({})", extra);
+  if (!extra.empty()) opened.fields += fmt::format(" ({})", extra);
   if (options.map == nullptr && saysDegrees(header)) {
-    cloud.warnings.push_back(
+    opened.notes.push_back(
         fmt::format("{}: its coordinates are degrees, and taken as metres here", name));
   }
-  cloud.warnings.insert(cloud.warnings.begin(), header.warnings.begin(), header.warnings.end());
-  return cloud;
+  opened.warnings = header.warnings;
+  opened.black_is_none = true;
+  opened.source =
+      std::make_unique<LasSource>(std::move(header), std::move(points), options.colours);
+  return opened;
 }
 
 }  // namespace agricolmap::io

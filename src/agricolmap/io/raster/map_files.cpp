@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 
@@ -43,6 +45,13 @@ FileCrs crsOfMap(const MapFiles& files, const std::string& given) {
 Cloud readMap(const MapFiles& files, const ReadOptions& read, const ImportOptions& options) {
   if (!files.raster) return readCloud(files.main, read);
   return importOrtho(files.main, files.model, options, read.map);
+}
+
+std::unique_ptr<PointStream> streamMap(const MapFiles& files, const StreamOptions& options) {
+  if (!files.raster) return streamCloud(files.main, options);
+  Cloud cloud = readMap(files, options.read);
+  cloud.crs = options.crs;
+  return keptStream(std::move(cloud));
 }
 
 }  // namespace agricolmap::io

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/point_stream.hpp"
+#include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/cloud/read_options.hpp"
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
@@ -29,5 +32,8 @@ FileCrs crsOfMap(const MapFiles& files, const std::string& given = "");
 /// A cloud, or the points of a raster: importOrtho with the coordinates as they are.
 Cloud readMap(const MapFiles& files, const ReadOptions& read = {},
               const ImportOptions& options = {});
+
+/// As streamCloud; the points of a raster are kept.
+std::unique_ptr<PointStream> streamMap(const MapFiles& files, const StreamOptions& options);
 
 }  // namespace agricolmap::io

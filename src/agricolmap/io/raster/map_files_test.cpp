@@ -53,6 +53,28 @@ TEST(MapFiles, RastersAreCloudsInTheirOwnSystem) {
   EXPECT_NE(flat.warnings[0].find("laid flat"), std::string::npos);
 }
 
+TEST(MapFiles, PassByAsTheyAreRead) {
+  const TempDir dir;
+  const std::string ortho = writeSheet(dir / "o.tif", {});
+  const std::string dsm = writeSheet(dir / "d.tif", heights());
+  const std::string lines = dir.write("lines.xyz", "1 2 3\n4 5 6\n7 8 9\n");
+  for (const std::string& text : {ortho + "," + dsm, lines}) {
+    const Cloud cloud = readMap(mapFilesOf(text));
+    StreamOptions options;
+    options.keep = 0;
+    options.crs.name = "here";
+    const auto stream = streamMap(mapFilesOf(text), options);
+    EXPECT_EQ(stream->facts().name, cloud.name);
+    EXPECT_EQ(stream->facts().origin, cloud.origin);
+    EXPECT_EQ(stream->facts().crs.name, "here");
+    std::vector<Eigen::Vector3f> points;
+    stream->pass([&](const PointBatch& batch) {
+      points.insert(points.end(), batch.xyz.begin(), batch.xyz.end());
+    });
+    EXPECT_TRUE(points == cloud.xyz);
+  }
+}
+
 TEST(MapFiles, RastersAreBroughtToTheSystemOfTheOther) {
   const TempDir dir;
   Sheet feet;

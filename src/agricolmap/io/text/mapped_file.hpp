@@ -1,6 +1,8 @@
 // A file's bytes without a copy of them.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -19,11 +21,14 @@ class MappedFile {
 
   std::span<const std::byte> bytes() const { return bytes_; }
   std::string_view text() const;
-  /// Lets go of the memory of what was read, which is read again where it is asked for again: for
-  /// those who go through large files once.
-  void forget() const;
+  /// Gives back the memory of what was looked at; it is read again, mostly from the system's cache,
+  /// when it is looked at next. Throws InputError when the file was changed since it was opened.
+  void release() const;
 
  private:
+  std::filesystem::path path_;
+  int fd_ = -1;
+  struct stat opened_ {};
   std::span<const std::byte> bytes_;
 };
 

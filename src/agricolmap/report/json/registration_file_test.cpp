@@ -61,7 +61,7 @@ class RegistrationFile : public ::testing::Test {
     const Monitor monitor;
     RegistrationReportInfo info;
     info.moving_file_crs = Crs{"feet", "PROJCS[\"feet\"]", 0.3048, 1.0};
-    return registrationJson(moving_, moving_, registration, monitor, info);
+    return registrationJson(CloudStream(moving_), moving_, registration, monitor, info);
   }
   std::filesystem::path write(const std::string& text) const {
     std::ofstream(folder_ / "registration.json") << text;

@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
-#include <optional>
 
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
@@ -50,21 +49,22 @@ Json fileCrsJson(const std::optional<Crs>& crs) {
           {"vertical_unit_m", number(crs->vertical_unit)}};
 }
 
-Json cloudJson(const Cloud& cloud, const std::optional<Crs>& file_crs,
+Json cloudJson(const PointStream& stream, const std::optional<Crs>& file_crs,
                const map::Levelling& levelling, const map::Footprint& footprint,
                const map::GridMap& map) {
+  const CloudFacts& cloud = stream.facts();
   Json json;
   json["path"] = validUtf8(cloud.name);
-  json["points"] = cloud.size();
+  json["points"] = cloud.points;
   json["dropped_points"] = cloud.dropped_points;
   json["stray_points"] = footprint.left_out;
-  json["has_colour"] = cloud.hasColour();
+  json["has_colour"] = cloud.coloured;
   json["crs"] = cloud.crs.wkt.empty()
                     ? Json(nullptr)
                     : Json{{"name", validUtf8(cloud.crs.name)}, {"wkt", validUtf8(cloud.crs.wkt)}};
   json["file_crs"] = fileCrsJson(file_crs);
   json["origin_m"] = vectorJson(cloud.origin);
-  const Box3 box = boundingBox(cloud);
+  const Box3 box = stream.box();
   json["box_min_m"] = vectorJson((cloud.origin + box.min.cast<double>()).eval());
   json["box_max_m"] = vectorJson((cloud.origin + box.max.cast<double>()).eval());
   json["ground"] = {{"tilt_deg", number(degrees(levelling.tilt))},
@@ -80,7 +80,7 @@ Json cloudJson(const Cloud& cloud, const std::optional<Crs>& file_crs,
   return json;
 }
 
-Json transformJson(const Cloud& fixed, const Cloud& moving,
+Json transformJson(const CloudFacts& fixed, const Cloud& moving,
                    const pipeline::Registration& registration) {
   if (!registration.transform.has_value()) return nullptr;
   Json json;
@@ -208,7 +208,7 @@ Json heightsJson(const pipeline::Registration& registration) {
 }
 
 /// Of (shift_x, shift_y, shift_z [m], yaw [rad], scale_x, scale_y [relative]).
-Json uncertaintyJson(const Cloud& fixed, const pipeline::Registration& registration) {
+Json uncertaintyJson(const CloudFacts& fixed, const pipeline::Registration& registration) {
   if (!registration.transform.has_value() || !registration.placed->uncertainty) return nullptr;
   const verdict::PoseUncertainty& uncertainty = *registration.placed->uncertainty;
   const double turn = registration.maps.frames.turn;
@@ -329,16 +329,15 @@ std::size_t threadsInForce(int asked) {
 
 }  // namespace
 
-std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
+std::vector<std::string> warningsOf(const PointStream& fixed, const Cloud& moving,
                                     const Monitor& monitor) {
-  std::vector<std::string> all = fixed.warnings;
-  for (const auto* more : {&moving.warnings, &monitor.warnings()}) {
-    all.insert(all.end(), more->begin(), more->end());
-  }
+  std::vector<std::string> all = fixed.facts().warnings;
+  all.insert(all.end(), moving.warnings.begin(), moving.warnings.end());
+  all.insert(all.end(), monitor.warnings().begin(), monitor.warnings().end());
   return all;
 }
 
-nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
+nlohmann::ordered_json registrationJson(const PointStream& fixed, const Cloud& moving,
                                         const pipeline::Registration& registration,
                                         const Monitor& monitor,
                                         const RegistrationReportInfo& info) {
@@ -353,8 +352,8 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   json["plane_probability"] = number(registration.verdict.plane_probability);
   json["place_probability"] = number(registration.verdict.place_probability);
   json["heights"] = heightsJson(registration);
-  json["transform"] = transformJson(fixed, moving, registration);
-  json["uncertainty"] = uncertaintyJson(fixed, registration);
+  json["transform"] = transformJson(fixed.facts(), moving, registration);
+  json["uncertainty"] = uncertaintyJson(fixed.facts(), registration);
   json["deformation"] = deformationJson(moving, registration);
   json["alternatives"] = alternativesJson(registration);
   json["prior"] = {{"matrix", matrixJson(info.prior.matrix())},
@@ -366,7 +365,7 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   const pipeline::PairMaps& maps = registration.maps;
   json["fixed"] = cloudJson(fixed, info.fixed_file_crs, maps.frames.fixed,
                             maps.frames.fixed_footprint, maps.fixed);
-  json["moving"] = cloudJson(moving, info.moving_file_crs, maps.frames.moving,
+  json["moving"] = cloudJson(CloudStream(moving), info.moving_file_crs, maps.frames.moving,
                              maps.frames.moving_footprint, maps.moving);
   json["times"] = timesJson(monitor);
   json["peak_memory_bytes"] = peakMemoryBytes();
@@ -380,9 +379,9 @@ nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
   return json;
 }
 
-void writeRegistrationJson(const io::OutputPath& path, const Cloud& fixed, const Cloud& moving,
-                           const pipeline::Registration& registration, const Monitor& monitor,
-                           const RegistrationReportInfo& info) {
+void writeRegistrationJson(const io::OutputPath& path, const PointStream& fixed,
+                           const Cloud& moving, const pipeline::Registration& registration,
+                           const Monitor& monitor, const RegistrationReportInfo& info) {
   io::writeText(path, registrationJson(fixed, moving, registration, monitor, info).dump(2) + "\n");
 }
 

@@ -34,19 +34,19 @@ struct RegistrationReportInfo {
 };
 
 /// What was said about the clouds when they were read, and on the way.
-std::vector<std::string> warningsOf(const Cloud& fixed, const Cloud& moving,
+std::vector<std::string> warningsOf(const PointStream& fixed, const Cloud& moving,
                                     const Monitor& monitor);
 
 /// The report; numbers are doubles to the last digit, what is not finite is null. All strings are
 /// valid UTF-8.
-nlohmann::ordered_json registrationJson(const Cloud& fixed, const Cloud& moving,
+nlohmann::ordered_json registrationJson(const PointStream& fixed, const Cloud& moving,
                                         const pipeline::Registration& registration,
                                         const Monitor& monitor, const RegistrationReportInfo& info);
 
 /// Writes it, indented. Throws OutputError.
-void writeRegistrationJson(const io::OutputPath& path, const Cloud& fixed, const Cloud& moving,
-                           const pipeline::Registration& registration, const Monitor& monitor,
-                           const RegistrationReportInfo& info);
+void writeRegistrationJson(const io::OutputPath& path, const PointStream& fixed,
+                           const Cloud& moving, const pipeline::Registration& registration,
+                           const Monitor& monitor, const RegistrationReportInfo& info);
 
 /// Most memory that the process ever held [bytes]; 0 where the system does not tell.
 std::size_t peakMemoryBytes();

@@ -45,9 +45,10 @@ Json reportOf(const pipeline::Registration& registration) {
   for (const Stage stage : {Stage::kLevel, Stage::kGrid}) {
     monitor.run(stage, [] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); });
   }
+  const Cloud uav = testCloud("uav.ply", false);
   // As text and back, as every reader gets it.
-  return Json::parse(registrationJson(testCloud("uav.ply", false), testCloud("\xFF.ply", true),
-                                      registration, monitor, testInfo())
+  return Json::parse(registrationJson(CloudStream(uav), testCloud("\xFF.ply", true), registration,
+                                      monitor, testInfo())
                          .dump(2));
 }
 
@@ -173,7 +174,8 @@ TEST(RegistrationJson, WhatIsNotFiniteIsNull) {
 
 TEST(RegistrationJson, FailuresToWriteAreOutputErrors) {
   const pipeline::Registration registration = testing::testRegistration();
-  EXPECT_THROW(writeRegistrationJson("/nonexistent/registration.json", testCloud("a", true),
+  const Cloud fixed = testCloud("a", true);
+  EXPECT_THROW(writeRegistrationJson("/nonexistent/registration.json", CloudStream(fixed),
                                      testCloud("b", true), registration, Monitor(), testInfo()),
                OutputError);
 }
