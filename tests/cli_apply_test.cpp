@@ -144,6 +144,25 @@ TEST_F(ApplyTest, SeveralCloudsAndFormatsAtOnce) {
   EXPECT_EQ(entries("las"), std::set<std::string>{"part.las"});
 }
 
+TEST_F(ApplyTest, LinesOfTextBecomePly) {
+  const PairFiles files = pair("georeferenced");
+  registered(files.uav(), files.ugv());
+  std::string lines;
+  for (const PlyPoint& point : pointsOfPly(contentOf(files.ugv()))) {
+    for (const double value : point.xyz) lines += std::to_string(value) + " ";
+    lines += "90 80 70\n";
+  }
+  applied({write("lines.xyz", lines), files.ugv()});
+  const auto text = pointsOfPly(contentOf(inFolder("applied/lines.xyz.ply")));
+  const auto ply = pointsOfPly(contentOf(inFolder("applied/point_cloud.ply")));
+  ASSERT_EQ(text.size(), ply.size());
+  for (std::size_t i = 0; i < ply.size(); i += 97) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ASSERT_NEAR(text[i].xyz[axis], ply[i].xyz[axis], 2e-5);
+    }
+  }
+}
+
 TEST_F(ApplyTest, WhatCannotBeAppliedIsRefused) {
   const PairFiles files = pair("georeferenced");
   registered(files.uav(), files.ugv());

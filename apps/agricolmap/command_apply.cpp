@@ -43,6 +43,7 @@ std::vector<Job> jobsOf(const ApplyArguments& arguments) {
   for (const std::string& cloud : arguments.clouds) {
     const io::CloudFormat own = io::formatOf(cloud);
     Job job{cloud, own, fs::path(cloud).filename()};
+    if (own == io::CloudFormat::kXyz) job.format = io::CloudFormat::kPly;
     if (arguments.format != "auto") job.format = formatNamed("--format", arguments.format);
     const auto named = io::formatByEnding(job.name);
     // LAZ that is called so may be COPC, whose order the result does not have.
@@ -186,12 +187,12 @@ CommandSlot addApplyCommand(CLI::App& app, const Globals& globals) {
   command->add_option("RUN_DIR", arguments->run, "Folder with the results of register")->required();
   command
       ->add_option("CLOUDS", arguments->clouds,
-                   "Clouds in the coordinates of MOVING: LAS, LAZ, PLY or PCD")
+                   "Clouds in the coordinates of MOVING: LAS, LAZ, PLY, PCD or lines of text")
       ->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
   command->add_option("--format", arguments->format,
-                      "Format of the results: ply, pcd, las, laz, copc, or auto: as each cloud is "
-                      "[auto]");
+                      "Format of the results: ply, pcd, las, laz, copc, or auto: as each cloud is, "
+                      "ply of text [auto]");
   command->add_option("--crs", arguments->crs,
                       "Coordinate system of the clouds: EPSG:32632, WKT or a file with it, instead "
                       "of what they say. Default, where they do not: that of MOVING");

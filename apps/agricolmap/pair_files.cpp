@@ -56,8 +56,8 @@ LoadedPair loadPair(const PairFiles& files,
   const io::FileCrs fixed = io::crsOfMap(fixed_files, files.fixed_crs);
   const io::FileCrs moving = io::crsOfMap(moving_files, files.moving_crs);
   pair.frame = io::commonFrame(fixed, moving);
-  pair.format = moving_files.raster ? io::CloudFormat::kPly : io::formatOf(moving_files.main);
-  pair.aligned = io::isLas(pair.format) ? pair.format : io::CloudFormat::kPly;
+  if (!moving_files.raster) pair.format = io::formatOf(moving_files.main);
+  if (pair.format && io::isLas(*pair.format)) pair.aligned = *pair.format;
   if (files.aligned != "auto") pair.aligned = formatNamed("--aligned-format", files.aligned);
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
@@ -87,7 +87,7 @@ std::vector<std::string> writeAligned(const PairFiles& files, const LoadedPair& 
                                       const io::PointMove& fixed_from_moving,
                                       const io::StagedOutput& output) {
   const io::OutputPath path = output.path(nameOfAligned(pair.aligned));
-  if (!io::keepsAttributes(pair.format, pair.aligned)) {
+  if (!pair.format || !io::keepsAttributes(*pair.format, pair.aligned)) {
     io::writeCloud(path, pair.moving, pair.aligned, fixed_from_moving);
     return {};
   }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct PairFiles {
 /// by and is not kept.
 struct LoadedPair {
   io::CommonFrame frame;
-  io::CloudFormat format = io::CloudFormat::kPly;   ///< of MOVING
+  std::optional<io::CloudFormat> format;            ///< of MOVING, unless it is a raster
   io::CloudFormat aligned = io::CloudFormat::kPly;  ///< of the aligned cloud
   std::unique_ptr<PointStream> fixed;
   Cloud moving;
