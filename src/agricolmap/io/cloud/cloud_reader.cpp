@@ -20,7 +20,7 @@ namespace agricolmap::io {
 namespace {
 
 std::string remedyFor(std::string_view bytes) {
-  const std::string known = describeForeign(bytes);
+  std::string known = describeForeign(bytes);
   if (!known.empty()) return known;
   return "known are LAS, LAZ, PLY, PCD and text with lines 'x y z' or 'x y z r g b'";
 }
