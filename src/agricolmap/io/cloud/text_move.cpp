@@ -116,7 +116,7 @@ class Pieces {
     }
     std::sort(changed.begin(), changed.end());
     for (const std::size_t i : changed) {
-      out.append(done, words[i].data());
+      out.append(done, static_cast<std::size_t>(words[i].data() - done));
       done = words[i].data() + words[i].size();
       if (std::isnan(values[i])) {
         out += "nan";
