@@ -75,12 +75,15 @@ const Target* targetOf(std::string_view name) {
   return found == kTargets.end() ? nullptr : found;
 }
 
-void runOn(const Target& target, std::span<const std::uint8_t> bytes) {
+bool runOn(const Target& target, std::span<const std::uint8_t> bytes) {
   const MemoryFile file(bytes);
   try {
     target.read(file.path());
+    return true;
   } catch (const InputError&) {
+    return false;
   } catch (const UsageError&) {
+    return false;
   }
 }
 

@@ -20,8 +20,8 @@ std::span<const Target> targets();
 /// Null where there is none of that name.
 const Target* targetOf(std::string_view name);
 
-/// Reads these bytes as a file. Errors of input are what they should lead to; all else gets
+/// Reads these bytes as a file, and says whether it was read: else it was refused. All else gets
 /// through, and a cloud with a point that is not finite ends the program.
-void runOn(const Target& target, std::span<const std::uint8_t> bytes);
+bool runOn(const Target& target, std::span<const std::uint8_t> bytes);
 
 }  // namespace agricolmap::fuzz
