@@ -136,6 +136,7 @@ class FileStream : public PointStream {
 std::vector<ChunkFacts> FileStream::lookAtAll() {
   const PointSource& source = *file_.source;
   if (source.dear()) {
+    spill_.reset();  // there need not be room for both
     spill_ = std::make_unique<PointSpill>(source.points(), hasChannels(), file_.name);
   }
   std::vector<ChunkFacts> chunks(source.chunks());
