@@ -77,6 +77,7 @@ std::optional<Outcome> placeByPieces(const Cloud& moving, const deform::Path& pa
   // Every piece was found by itself: there is no other basin to look into.
   RegistrationOptions sure = options;
   sure.dense.hops = 0;
+  maps.space.uncertainty = withDrift(maps.space.uncertainty, options.pieces.drift);
   Outcome outcome = settle(maps, laid, std::move(located), std::move(rivals), sure, monitor);
   outcome.trace.attempts = anchor->outcome.trace.attempts;
   outcome.trace.pieces = best.chain;

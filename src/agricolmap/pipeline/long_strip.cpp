@@ -157,6 +157,12 @@ std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen:
   return std::nullopt;
 }
 
+PriorUncertainty withDrift(PriorUncertainty prior, double drift) {
+  prior.heading_deg = std::min(180.0, prior.heading_deg + degrees(drift));
+  prior.scale = 1.0 - (1.0 - prior.scale) * (1.0 - drift);
+  return prior;
+}
+
 std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& path, double along,
                                     const RegistrationOptions& options) {
   const double half = 0.5 * std::min(options.search.max_length, path.length());
@@ -174,6 +180,7 @@ std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& p
   piece.space.centre = path.point(along);
   // What a wrong heading and scale about the whole's middle moves the piece by.
   PriorUncertainty& uncertainty = piece.space.uncertainty;
+  uncertainty = withDrift(uncertainty, options.pieces.drift);
   const double arm = (piece.space.centre - whole.space.centre).norm();
   const double swing =
       std::hypot(std::exp(logScaleLimit(uncertainty)) - 1.0, radians(uncertainty.heading_deg));

@@ -22,6 +22,10 @@ std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen:
                                    const PairMaps& maps, const RegistrationOptions& options,
                                    Monitor& monitor);
 
+/// What the guess may be wrong by of a part of a strip, and of the nearest pose of one that is
+/// bent: `drift` of dead reckoning, a share of the way, comes on top, in heading and scales.
+PriorUncertainty withDrift(PriorUncertainty prior, double drift);
+
 /// The maps of the piece about `along`, as long as the search looks for, and of what it can reach;
 /// nothing when the guess lays it beside the fixed map.
 std::optional<PairMaps> mapsOfPiece(const PairMaps& whole, const deform::Path& path, double along,

@@ -97,6 +97,16 @@ TEST(LongStrip, EndsThatWereNotFoundAreNamedWhereTheMapShowsThem) {
   EXPECT_FALSE(lostEnd(followed, path, fixed));
 }
 
+TEST(WithDrift, ComesOnTopOfWhatTheGuessMayBeWrongBy) {
+  const PriorUncertainty prior{.translation = 5.0, .heading_deg = 10.0, .scale = 0.3};
+  const PriorUncertainty drifted = withDrift(prior, 0.04);
+  EXPECT_EQ(drifted.translation, 5.0);
+  EXPECT_NEAR(drifted.heading_deg, 10.0 + degrees(0.04), 1e-12);
+  EXPECT_NEAR(logScaleLimit(drifted), logScaleLimit(prior) - std::log(1.0 - 0.04), 1e-12);
+  EXPECT_EQ(withDrift(PriorUncertainty::none(), 0.04).heading_deg, 180.0);
+  EXPECT_NEAR(withDrift(prior, 0.0).scale, prior.scale, 1e-12);
+}
+
 TEST(PathOf, SaysWhatAPathIsGoodFor) {
   RegistrationOptions options;
   Cloud moving;
