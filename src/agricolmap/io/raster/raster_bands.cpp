@@ -119,7 +119,8 @@ ColourBands colourBandsOf(GDALDataset& dataset, BandOrder order, const std::stri
   }
   if (count < 3) {
     throw InputError(
-        fmt::format("{}: has {} band(s), so no colours; an orthomosaic needs red, green and blue",
+        fmt::format("{}: has {} band(s), so no colours; an orthomosaic needs red, green and blue; "
+                    "a surface model stands behind its orthomosaic, ORTHO.tif,DSM.tif",
                     name, count));
   }
   if (order == BandOrder::kAuto) {
