@@ -186,6 +186,9 @@ TEST_F(FormatsTest, AFewPointsFarOffAreNotTheSizeOfTheField) {
   points.pop_back();
   const ProgramResult near_by = run({"info", write("near.ply", plyBytes(points))});
   EXPECT_EQ(near_by.out.find("most of it"), std::string::npos) << near_by.out;
+  const std::vector<PlyPoint> sparse{{{0.0, 0.0, 0.0}, {1, 2, 3}}, {{10.0, 10.0, 1.0}, {1, 2, 3}}};
+  const ProgramResult thin = run({"info", write("thin.ply", plyBytes(sparse))});
+  EXPECT_NE(thin.out.find("density    0.02 points per m2"), std::string::npos) << thin.out;
 }
 
 TEST_F(FormatsTest, LinesOfTextAreRegistered) {

@@ -83,8 +83,9 @@ ExitCode runInfo(const std::string& path) {
   }
   const double area = few_far ? most.x() * most.y() : size.x() * size.y();
   if (area > 0.0 && metres) {
-    fmt::print("density    {:.0f} points per m2 of the {}\n",
-               static_cast<double>(cloud.size()) / area,
+    const double density = static_cast<double>(cloud.size()) / area;
+    fmt::print("density    {} points per m2 of the {}\n",
+               density < 10.0 ? fmt::format("{:.2g}", density) : fmt::format("{:.0f}", density),
                few_far ? "area of most of it" : "bounding box");
   }
   fmt::print("offset.xyz {}\n",
