@@ -178,7 +178,8 @@ TEST_F(OptionsTest, ConfigurationsThatMakeNoSenseAreNamed) {
   expectBad("twice.yaml", "grid:\n  cell: 0.1\n  cell: 0.2\n", "cell");
   expectBad("syntax.yaml", "grid: {cell: 0.1\n", "");
   const std::string none = inFolder("none.yaml");
-  expectFailure({"register", cloud, cloud, "--config", none, "-o", inFolder("out")}, 3, {none});
+  expectFailure({"register", cloud, cloud, "--config", none, "-o", inFolder("out")}, 3,
+                {none, "no such file"});
 }
 
 TEST_F(OptionsTest, HelpAndVersionAreNoErrors) {
