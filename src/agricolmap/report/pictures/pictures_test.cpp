@@ -50,6 +50,10 @@ TEST_F(Pictures, AllAreWrittenAndDecode) {
     EXPECT_LT(picture.height(), 1600) << name;
     EXPECT_LT(fs::file_size(dir_ / name), 4000000U) << name;
     EXPECT_EQ(picture.share(isBannerRed), 0.0) << name;
+    // Nothing stands on the lower edge or is cut off by it.
+    for (int y = picture.height() - 8; y < picture.height(); ++y) {
+      for (int x = 0; x < picture.width(); ++x) ASSERT_EQ(picture.pixel(x, y), 0xFFFFFFU) << name;
+    }
     // Neither an empty page nor one flat panel.
     EXPECT_LT(picture.share([](int r, int g, int b) { return r + g + b == 3 * 255; }), 0.7) << name;
   }
