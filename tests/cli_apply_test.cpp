@@ -95,6 +95,27 @@ TEST_F(ApplyTest, TheCloudThatWasRegisteredBecomesTheAlignedOne) {
   }
 }
 
+TEST_F(ApplyTest, WithoutHeightsTheBendInThePlaneIsStatedAndApplied) {
+  const PairFiles files = pair("georeferenced");
+  const auto flat = [&](const std::string& from, const std::string& name) {
+    auto points = pointsOfPly(contentOf(from));
+    for (PlyPoint& point : points) point.xyz[2] = 0.0;
+    return write(name, plyBytes(points));
+  };
+  const std::string strip = flat(bent(files.ugv()), "strip.ply");
+  registered(flat(files.uav(), "field.ply"), strip);
+  const nlohmann::json deformation = report().at("deformation");
+  ASSERT_FALSE(deformation.is_null());
+  for (const nlohmann::json& node : deformation.at("nodes")) {
+    const nlohmann::json& deviation = node.at("deviation_m");
+    ASSERT_TRUE(deviation.at(0).is_number() && deviation.at(1).is_number()) << deviation;
+    EXPECT_GT(deviation.at(0).get<double>(), 0.0);
+    EXPECT_LT(deviation.at(0).get<double>(), 0.05);
+    EXPECT_TRUE(deviation.at(2).is_null()) << deviation;
+  }
+  expectSame(applied({strip}) + "/strip.ply", inFolder("run/aligned.ply"));
+}
+
 TEST_F(ApplyTest, WhatWasReprojectedIsReprojectedAgain) {
   const PairFiles files = pair("georeferenced");
   const std::string uav = converted(files.uav(), "uav.las", {"--crs", "EPSG:32632"});
@@ -199,6 +220,10 @@ TEST_F(ApplyTest, WhatCannotBeAppliedIsRefused) {
   fails({own, "-o", inFolder("own")}, 2, {"overwritten"});
   fails({cloud, "-o", inFolder("run")}, 4, {"not empty", "--overwrite"});
   fails({inFolder("gone.las"), "-o", inFolder("none")}, 3, {"gone.las"});
+  const std::string raster = write("ortho.tif", std::string("II*\0\x08\0\0\0", 8));
+  fails({raster, "-o", inFolder("none")}, 3,
+        {"ortho.tif: is a raster", "agricolmap convert " + raster + " points.laz"});
+  fails({raster + "," + raster, "-o", inFolder("none")}, 3, {"convert " + raster + " " + raster});
   // The second is damaged: nothing is left of the first.
   const std::string damaged = write("damaged.ply", contentOf(cloud).substr(0, 5000));
   fails({cloud, damaged, "-o", inFolder("none")}, 3, {"damaged.ply", "truncated"});

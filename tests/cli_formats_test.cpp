@@ -186,6 +186,14 @@ TEST_F(FormatsTest, AFewPointsFarOffAreNotTheSizeOfTheField) {
   points.pop_back();
   const ProgramResult near_by = run({"info", write("near.ply", plyBytes(points))});
   EXPECT_EQ(near_by.out.find("most of it"), std::string::npos) << near_by.out;
+  const std::string degrees =
+      write("degrees.xyz", "9.1234567 47.2 400 1 2 3\n9.2 47.3 401 1 2 3\n");
+  write("degrees.prj", "EPSG:4326");
+  const ProgramResult global = run({"info", degrees});
+  EXPECT_NE(global.out.find("x          9.1234567"), std::string::npos) << global.out;
+  const std::vector<PlyPoint> sparse{{{0.0, 0.0, 0.0}, {1, 2, 3}}, {{10.0, 10.0, 1.0}, {1, 2, 3}}};
+  const ProgramResult thin = run({"info", write("thin.ply", plyBytes(sparse))});
+  EXPECT_NE(thin.out.find("density    0.02 points per m2"), std::string::npos) << thin.out;
 }
 
 TEST_F(FormatsTest, LinesOfTextAreRegistered) {

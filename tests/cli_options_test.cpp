@@ -133,7 +133,12 @@ TEST_F(OptionsTest, MisuseIsNamed) {
   expectFailure({}, 2, {});
   expectFailure({"registre"}, 2, {"registre"});
   expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--grid.sell", "1"}, 2,
-                {"--grid.sell"});
+                {"no option '--grid.sell'", "--grid.cell"});
+  expectFailure({"register", cloud, cloud, "--prior-sgima", "1,2,3", "-o", inFolder("out")}, 2,
+                {"register has no option '--prior-sgima'; is --prior-sigma meant?"});
+  expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--wheels=4"}, 2,
+                {"register has no option '--wheels'; see agricolmap register --help"});
+  expectFailure({"info", cloud, cloud}, 2, {"cloud.ply' is more than info takes"});
   expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--preset", "papre"}, 2,
                 {"papre", "paper"});
   expectFailure({"register", cloud, cloud, "-o", inFolder("out"), "--grid.cell", "-1"}, 2,
@@ -173,7 +178,8 @@ TEST_F(OptionsTest, ConfigurationsThatMakeNoSenseAreNamed) {
   expectBad("twice.yaml", "grid:\n  cell: 0.1\n  cell: 0.2\n", "cell");
   expectBad("syntax.yaml", "grid: {cell: 0.1\n", "");
   const std::string none = inFolder("none.yaml");
-  expectFailure({"register", cloud, cloud, "--config", none, "-o", inFolder("out")}, 3, {none});
+  expectFailure({"register", cloud, cloud, "--config", none, "-o", inFolder("out")}, 3,
+                {none, "no such file"});
 }
 
 TEST_F(OptionsTest, HelpAndVersionAreNoErrors) {

@@ -202,6 +202,8 @@ TEST_F(OrthoTest, ASecondDateRegistersToAFirst) {
 TEST_F(OrthoTest, RastersAreToldAndConverted) {
   const std::string ortho = writeMosaic("ortho.tif", 3.0, 2.0);
   const std::string dsm = writeModel("dsm.tif", 3.0, 2.0, true);
+  expectFailure({"register", ortho, dsm, "-o", inFolder("out")}, 3,
+                {"dsm.tif", "no colours", "ORTHO.tif,DSM.tif"});
   const ProgramResult info = runAgricolmap({"info", ortho + "," + dsm});
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_NE(info.out.find("UTM zone 32N"), std::string::npos) << info.out;
@@ -211,6 +213,8 @@ TEST_F(OrthoTest, RastersAreToldAndConverted) {
     words.insert(words.end(), from.begin(), from.end());
     words.push_back(inFolder("map.las"));
     EXPECT_EQ(runAgricolmap(words).exit_code, 0);
+    expectFailure({"convert", ortho, inFolder("map.las"), inFolder("both.las")}, 3,
+                  {"map.las: is a cloud", "GeoTIFF"});
     const ProgramResult las = runAgricolmap({"info", inFolder("map.las")});
     EXPECT_NE(las.out.find("UTM zone 32N"), std::string::npos) << las.out;
     EXPECT_NE(las.out.find("z          300."), std::string::npos) << las.out;

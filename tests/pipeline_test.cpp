@@ -251,6 +251,10 @@ TEST(Pipeline, FindsAnUnknownScale) {
             0.05);
   EXPECT_NEAR(result.transform->parts.scale_x, 1.0 / static_cast<double>(kUnit), 0.2);
   EXPECT_NEAR(result.transform->vertical_scale, 1.0 / static_cast<double>(kUnit), 0.2);
+  // No map of the strip before its scale is known is no flat one.
+  for (const std::string& warning : monitor.warnings()) {
+    EXPECT_EQ(warning.find("flat"), std::string::npos) << warning;
+  }
 }
 
 TEST(Pipeline, TheFlowCannotSearchEverywhere) {

@@ -13,6 +13,7 @@
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/report/json/registration_file.hpp"
 #include "common.hpp"
 #include "pair_files.hpp"
@@ -38,9 +39,19 @@ struct Job {
   std::string name;  ///< within the output folder
 };
 
+void refuseRaster(const std::string& cloud) {
+  const io::MapFiles map = io::mapFilesOf(cloud);
+  if (!map.raster) return;
+  throw InputError(fmt::format(
+      "{}: is a raster; only clouds are laid: write its points first (agricolmap convert "
+      "{}{}{} points.laz)",
+      cloud, map.main.string(), map.model ? " " : "", map.model.value_or(fs::path()).string()));
+}
+
 std::vector<Job> jobsOf(const ApplyArguments& arguments) {
   std::vector<Job> jobs;
   for (const std::string& cloud : arguments.clouds) {
+    refuseRaster(cloud);
     const io::CloudFormat own = io::formatOf(cloud);
     Job job{cloud, own, fs::path(cloud).filename()};
     if (own == io::CloudFormat::kXyz) job.format = io::CloudFormat::kPly;

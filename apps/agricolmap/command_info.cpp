@@ -29,7 +29,7 @@ void printCrs(const io::FileCrs& file) {
   if (!io::isProjected(*file.crs)) {
     fmt::print(" (no metres)");
   } else if (!isMetric(file)) {
-    fmt::print(" (units of {} m, heights of {} m)", file.crs->horizontal_unit,
+    fmt::print(" (units of {:.10g} m, heights of {:.10g} m)", file.crs->horizontal_unit,
                file.crs->vertical_unit);
   }
   fmt::print("\n");
@@ -70,21 +70,25 @@ ExitCode runInfo(const std::string& path) {
   printCrs(crs);
   const bool metres = isMetric(crs);
   const char* const unit = metres ? " m" : "";
-  fmt::print("x          {:.3f} to {:.3f}{}\n", low.x(), high.x(), unit);
-  fmt::print("y          {:.3f} to {:.3f}{}\n", low.y(), high.y(), unit);
+  // A thousandth of a degree is a hundred metres.
+  const int digits = crs.crs && !io::isProjected(*crs.crs) ? 8 : 3;
+  fmt::print("x          {:.{}f} to {:.{}f}{}\n", low.x(), digits, high.x(), digits, unit);
+  fmt::print("y          {:.{}f} to {:.{}f}{}\n", low.y(), digits, high.y(), digits, unit);
   fmt::print("z          {:.3f} to {:.3f}{}\n", low.z(), high.z(), unit);
-  fmt::print("extent     {:.2f} x {:.2f} x {:.2f}{}\n", size.x(), size.y(), size.z(), unit);
+  fmt::print("extent     {:.{}f} x {:.{}f} x {:.2f}{}\n", size.x(), digits - 1, size.y(),
+             digits - 1, size.z(), unit);
   // A few points that fly far off would be taken for the size of the field.
   const Eigen::Vector3d most = mostOf(cloud);
   const bool few_far = most.x() * most.y() < 0.5 * size.x() * size.y();
   if (few_far) {
-    fmt::print("most of it {:.2f} x {:.2f} x {:.2f}{}: all but 0.2 % of the points\n", most.x(),
-               most.y(), most.z(), unit);
+    fmt::print("most of it {:.{}f} x {:.{}f} x {:.2f}{}: all but 0.2 % of the points\n", most.x(),
+               digits - 1, most.y(), digits - 1, most.z(), unit);
   }
   const double area = few_far ? most.x() * most.y() : size.x() * size.y();
   if (area > 0.0 && metres) {
-    fmt::print("density    {:.0f} points per m2 of the {}\n",
-               static_cast<double>(cloud.size()) / area,
+    const double density = static_cast<double>(cloud.size()) / area;
+    fmt::print("density    {} points per m2 of the {}\n",
+               density < 10.0 ? fmt::format("{:.2g}", density) : fmt::format("{:.0f}", density),
                few_far ? "area of most of it" : "bounding box");
   }
   fmt::print("offset.xyz {}\n",

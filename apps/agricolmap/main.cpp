@@ -4,11 +4,13 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
 #include <new>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +38,48 @@ void setUpLogging(const Globals& globals) {
   spdlog::set_level(globals.quiet         ? spdlog::level::err
                     : globals.verbose > 0 ? spdlog::level::debug
                                           : spdlog::level::info);
+}
+
+/// How many letters must be put in, left out or changed to make one word of the other.
+std::size_t lettersApart(const std::string& one, const std::string& other) {
+  std::vector<std::size_t> row(other.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    std::size_t above_left = std::exchange(row[0], i + 1);
+    for (std::size_t k = 0; k < other.size(); ++k) {
+      const std::size_t changed = above_left + (one[i] == other[k] ? 0 : 1);
+      above_left = row[k + 1];
+      row[k + 1] = std::min({changed, row[k] + 1, above_left + 1});
+    }
+  }
+  return row.back();
+}
+
+/// What `verb` was given and does not know, with what may have been meant.
+std::string describeUnknown(const CLI::App& app, const CLI::App& verb) {
+  constexpr std::size_t kMistyped = 2;  // letters
+  const std::vector<std::string> words = app.remaining(true);
+  const auto flag = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+    return word.size() > 1 && word.starts_with("-");
+  });
+  const std::string see = fmt::format("see agricolmap {} --help", verb.get_name());
+  if (flag == words.end()) {
+    return fmt::format("'{}' is more than {} takes; {}", words.front(), verb.get_name(), see);
+  }
+  const std::string typed = flag->substr(0, flag->find('='));
+  std::string meant;
+  std::size_t least = kMistyped + 1;
+  for (const CLI::App* taker : {&verb, &app}) {
+    for (const CLI::Option* option : taker->get_options()) {
+      for (const std::string& name : option->get_lnames()) {
+        const std::size_t apart = lettersApart(typed, "--" + name);
+        if (apart < least) meant = name;
+        least = std::min(least, apart);
+      }
+    }
+  }
+  return fmt::format("{} has no option '{}'; {}{}", verb.get_name(), typed,
+                     meant.empty() ? "" : fmt::format("is --{} meant? ", meant), see);
 }
 
 ExitCode run(int argc, char** argv) {
@@ -73,6 +117,14 @@ ExitCode run(int argc, char** argv) {
       return ExitCode::kUsage;
     }
     throw UsageError(fmt::format("there is no verb '{}'; see agricolmap --help", words.front()));
+  } catch (const CLI::ExtrasError& error) {
+    // CLI11 would say what is left over from behind.
+    const std::vector<CLI::App*> verbs = app.get_subcommands();
+    if (verbs.empty() || app.remaining(true).empty()) {
+      app.exit(error);
+      return ExitCode::kUsage;
+    }
+    throw UsageError(describeUnknown(app, *verbs.front()));
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage;
   }

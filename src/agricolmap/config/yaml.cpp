@@ -142,6 +142,10 @@ std::string oneLine(std::string text) {
 }  // namespace
 
 std::vector<std::string> loadYaml(const std::filesystem::path& file, OptionTable& table) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    throw InputError(fmt::format("{}: there is no such file", file.string()));
+  }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   // A folder opens like a file and only fails on reading; of an empty file nothing can be read.

@@ -139,8 +139,8 @@ Levelling levelFrom(const Eigen::Affine3d& start, const CloudFacts& cloud,
       Eigen::AlignedBox3d box;
       for (const Eigen::Vector3d& p : points) box.extend(p);
       throw InputError(fmt::format(
-          "{}: only {} ground cells of {} m hold 3 points or more, of {} points over {:.3g} x "
-          "{:.3g} m: are its coordinates metres? If they are, the cloud is too sparse or too small "
+          "{}: only {} ground cells of {} m hold 3 points or more, of {} points over {:.5g} x "
+          "{:.5g} m: are its coordinates metres? If they are, the cloud is too sparse or too small "
           "to level (reduce level.cell)",
           cloud.name, low.size(), options.cell, cloud.points, box.sizes().x(), box.sizes().y()));
     }

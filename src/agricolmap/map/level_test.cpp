@@ -89,7 +89,7 @@ TEST(Level, AsksForTheUnitsOfACloudThatSeemsSparse) {
   Cloud cloud;
   cloud.name = "centimetres";
   for (int i = 0; i < 2000; ++i) {
-    cloud.xyz.emplace_back(random.uniform(0, 1000), random.uniform(0, 220), random.normal(1.0));
+    cloud.xyz.emplace_back(random.uniform(0, 2000), random.uniform(0, 220), random.normal(1.0));
   }
   try {
     levelCloud(cloud, Eigen::Affine3d::Identity(), {});
@@ -97,6 +97,7 @@ TEST(Level, AsksForTheUnitsOfACloudThatSeemsSparse) {
   } catch (const InputError& error) {
     const std::string what = error.what();
     EXPECT_LT(what.find("metres?"), what.find("too sparse")) << what;
+    EXPECT_EQ(what.find("e+"), std::string::npos) << what;
   }
 }
 

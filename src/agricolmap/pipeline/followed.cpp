@@ -126,9 +126,15 @@ Eigen::Matrix3d Displacement::covarianceAt(const Eigen::Vector3d& moving_point) 
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   covariance.topLeftCorner<2, 2>() =
       verdict::placeCovariance(*placed.uncertainty, deformation.covarianceAt(point));
-  covariance(2, 2) =
+  const double height =
       std::pow(placed.uncertainty->height_deviation, 2) + std::pow(deformation.height_deviation, 2);
-  return file_from_levelled_ * covariance * file_from_levelled_.transpose();
+  // Of clouds without heights it is infinite, and times a zero of the rotation no number: what is
+  // known of the plane would be lost with it.
+  const bool known = std::isfinite(height);
+  covariance(2, 2) = known ? height : 0.0;
+  covariance = file_from_levelled_ * covariance * file_from_levelled_.transpose();
+  if (!known) covariance(2, 2) = height;
+  return covariance;
 }
 
 Cloud alignedCloud(const Registration& registration, const Cloud& moving) {

@@ -246,7 +246,10 @@ void followPieces(const FollowedPieces& followed, const deform::Path& path,
         const Eigen::Vector3d laid = followed.joined->bend.bent(point);
         return more != nullptr ? deform::unbent(laid, more->deformation, more->pose) : laid;
       });
-  if (more != nullptr) bend.gain = more->gain;
+  if (more != nullptr) {
+    bend.gain = more->gain;
+    bend.evidence = more->evidence;
+  }
   if (more == nullptr) {
     placed.followed = Followed{std::move(bend), straight};
   } else {

@@ -81,11 +81,12 @@ Registration registerClouds(const PointStream& fixed, const Cloud& moving,
   const RegistrationOptions options = resolved(chosen);
   requireUsable(fixed.facts(), factsOf(moving), options, locator != nullptr);
   PairMaps maps = mapPair(fixed, moving, guess, options, monitor);
-  warnOfFlat(maps.fixed, maps.moving, options.signal, monitor);
   auto [outcome, scale] =
       options.prior.scale_unknown
           ? placeAtAnyScale(fixed, moving, guess, options, locator, monitor, maps)
           : std::pair(placeAlongPath(moving, path, options, locator, monitor, maps), 1.0);
+  // At an unknown scale there was no moving map before.
+  warnOfFlat(maps.fixed, maps.moving, options.signal, monitor);
   // Only now: a search that found the place need not look for another one.
   if (options.require_heights) verdict::requireHeights(outcome.verdict);
   return monitor.run(Stage::kCompose, [&] {

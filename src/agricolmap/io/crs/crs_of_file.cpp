@@ -55,9 +55,9 @@ void readLasCrs(const std::filesystem::path& path, FileCrs& found) {
   if (const auto unit = verticalUnitOf(header)) {
     found.crs->vertical_unit = *unit;
   } else if (srs->IsVertical() == 0 && found.crs->vertical_unit != 1.0) {
-    found.warnings.push_back(
-        fmt::format("{}: it does not say the unit of its heights; taken is that of x and y ({} m)",
-                    found.name, found.crs->vertical_unit));
+    found.warnings.push_back(fmt::format(
+        "{}: it does not say the unit of its heights; taken is that of x and y ({:.10g} m)",
+        found.name, found.crs->vertical_unit));
   }
 }
 

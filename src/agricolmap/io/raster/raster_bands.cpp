@@ -119,7 +119,8 @@ ColourBands colourBandsOf(GDALDataset& dataset, BandOrder order, const std::stri
   }
   if (count < 3) {
     throw InputError(
-        fmt::format("{}: has {} band(s), so no colours; an orthomosaic needs red, green and blue",
+        fmt::format("{}: has {} band(s), so no colours; an orthomosaic needs red, green and blue; "
+                    "a surface model stands behind its orthomosaic, ORTHO.tif,DSM.tif",
                     name, count));
   }
   if (order == BandOrder::kAuto) {
@@ -189,9 +190,9 @@ double heightUnitOf(GDALDataset& dataset, GDALRasterBand& band, const std::strin
   if (srs == nullptr) return 1.0;
   const Crs crs = crsFrom(*srs);
   if (srs->IsVertical() == 0 && std::abs(crs.horizontal_unit - 1.0) > kMetreTolerance) {
-    warnings.push_back(
-        fmt::format("{}: it does not say the unit of its heights; taken is that of x and y ({} m)",
-                    name, crs.horizontal_unit));
+    warnings.push_back(fmt::format(
+        "{}: it does not say the unit of its heights; taken is that of x and y ({:.10g} m)", name,
+        crs.horizontal_unit));
   }
   return crs.vertical_unit;
 }

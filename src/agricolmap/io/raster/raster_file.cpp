@@ -15,9 +15,11 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/robust.hpp"
+#include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/crs/srs.hpp"
 #include "agricolmap/io/raster/raster_bands.hpp"
 #include "agricolmap/io/text/foreign_file.hpp"
+#include "agricolmap/io/text/mapped_file.hpp"
 
 namespace agricolmap::io {
 
@@ -51,6 +53,13 @@ GDALDatasetUniquePtr openRaster(const std::filesystem::path& path) {
     const bool raster = looksLikeRaster(path);
     if (!raster && !foreign.empty()) {
       throw InputError(fmt::format("{}: is no raster: {}", path.string(), foreign));
+    }
+    if (!raster && std::filesystem::is_regular_file(path, error) &&
+        formatByContent(MappedFile(path).text())) {
+      throw InputError(fmt::format(
+          "{}: is a cloud; what is needed here is a raster, an orthomosaic or a surface "
+          "model (GeoTIFF)",
+          path.string()));
     }
     fail(path.string(), "cannot be read as a raster");
   }

@@ -17,6 +17,7 @@ namespace agricolmap::io {
 namespace {
 
 constexpr double kRigidTolerance = 1e-6;
+constexpr int kMostLooked = 10000;  // files of a folder
 
 /// Where OpenDroneMap's local coordinates have their zero: the second line, behind one that names
 /// the UTM zone. Nothing for other files.
@@ -37,6 +38,23 @@ std::optional<Eigen::Affine3d> odmOffset(const std::filesystem::path& path) {
 
 std::array<std::string, 2> namesThatCount(const std::filesystem::path& cloud_file) {
   return {cloud_file.stem().string() + ".offset.xyz", "offset.xyz"};
+}
+
+/// Whether a cloud lies beside `offset` whose offset it is by its name.
+bool belongsToAnother(const std::filesystem::path& offset, const std::filesystem::path& folder) {
+  constexpr std::string_view kEnding = ".offset.xyz";
+  const std::string name = offset.filename().string();
+  if (name.size() <= kEnding.size() || !name.ends_with(kEnding)) return false;
+  const std::string stem = name.substr(0, name.size() - kEnding.size());
+  std::error_code error;
+  std::filesystem::directory_iterator entry(folder, error);
+  for (int i = 0; i < kMostLooked && !error && entry != std::filesystem::directory_iterator();
+       ++i) {
+    const std::filesystem::path& other = entry->path();
+    if (other.filename() != name && other.stem() == stem) return true;
+    entry.increment(error);
+  }
+  return false;
 }
 
 bool mayBeOffset(const std::string& file_name) {
@@ -81,7 +99,6 @@ std::optional<Eigen::Affine3d> readOffsetBeside(const std::filesystem::path& clo
 }
 
 std::vector<std::string> offsetsPassedBy(const std::filesystem::path& cloud_file) {
-  constexpr int kMostLooked = 10000;
   const std::filesystem::path folder =
       cloud_file.has_parent_path() ? cloud_file.parent_path() : std::filesystem::path(".");
   std::error_code error;
@@ -93,7 +110,8 @@ std::vector<std::string> offsetsPassedBy(const std::filesystem::path& cloud_file
   for (int i = 0; i < kMostLooked && !error && entry != std::filesystem::directory_iterator();
        ++i) {
     const std::filesystem::path file = entry->path();
-    if (mayBeOffset(file.filename().string()) && file.filename() != cloud_file.filename()) {
+    if (mayBeOffset(file.filename().string()) && file.filename() != cloud_file.filename() &&
+        !belongsToAnother(file, folder)) {
       passed.push_back(cloud_file.has_parent_path() ? file.string() : file.filename().string());
     }
     entry.increment(error);

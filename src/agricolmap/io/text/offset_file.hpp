@@ -28,8 +28,8 @@ Eigen::Affine3d readOffset(const std::filesystem::path& path);
 std::optional<Eigen::Affine3d> readOffsetBeside(const std::filesystem::path& cloud_file);
 
 /// Files in the folder of a cloud that may be its offset, but not by their names: Pix4D's
-/// *_offset.xyz, OpenDroneMap's coords.txt, offsets of other clouds. Sorted; empty where the cloud
-/// has one that counts.
+/// *_offset.xyz, OpenDroneMap's coords.txt, `<stem>.offset.xyz` of a cloud that is not there.
+/// Sorted; empty where the cloud has one that counts.
 std::vector<std::string> offsetsPassedBy(const std::filesystem::path& cloud_file);
 
 /// The line of an offset file, six numbers. Throws UsageError when `world_from_cloud` is not rigid.

@@ -147,6 +147,9 @@ TEST(OffsetFile, OthersThatArePassedByAreNamed) {
                                           dir.write("field_offset.xyz", ""),
                                           dir.write("other.offset.xyz", "")};
   dir.write("notes.txt", "");
+  // That of a cloud beside it is no mistake.
+  dir.write("robot.offset.xyz", "1 2 3\n");
+  dir.write("robot.laz", "");
   EXPECT_EQ(offsetsPassedBy(cloud), expected);
   dir.write("field.offset.xyz", "1 2 3\n");
   EXPECT_TRUE(offsetsPassedBy(cloud).empty());

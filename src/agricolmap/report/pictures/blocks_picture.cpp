@@ -126,7 +126,7 @@ void writeBlocksPicture(const io::OutputPath& path, const Scene& scene) {
   const int height =
       std::clamp(static_cast<int>(kInnerWidth / ground.aspect()), 120, kMaxPanelHeight);
   const int text_lines =
-      static_cast<int>(std::max<std::size_t>(5, result.verdict.reasons.size() + 1));
+      static_cast<int>(std::max(figures(result).size(), result.verdict.reasons.size() + 1));
   Page page(height + kLegendRoom + kLine * text_lines + kMargin,
             "Evidence: blocks of the moving map, each placed alone",
             fmt::format("A block agrees when its best place is within {:g} cm of where the "

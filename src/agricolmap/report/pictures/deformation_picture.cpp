@@ -27,8 +27,15 @@ constexpr Colour kGrid = hexColour(0xd5d9df);
 struct Sample {
   double along;
   std::array<double, 3> value;
-  std::array<double, 3> deviation;
+  std::array<double, 3> deviation;  ///< infinite where clouds without heights do not tell
 };
+
+/// What says that the strip is bent.
+std::string witnessesOf(const deform::Bend& bend) {
+  // Pieces of a long strip are chained; no fit leaves blocks out.
+  if (bend.gain == 0.0 && bend.evidence == 0.0) return "as pieces of the path were found";
+  return fmt::format("left-out blocks confirm it by {:.1f} standard errors", bend.gain);
+}
 
 std::vector<Sample> samplesOf(const pipeline::Placed& placed) {
   const deform::Deformation& deformation = placed.followed->bend.deformation;
@@ -96,10 +103,12 @@ void drawCurve(PictureCanvas& canvas, const Axes& axes, const std::vector<Sample
                std::size_t axis) {
   std::vector<Eigen::Vector2d> band, line;
   for (const Sample& sample : samples) {
+    if (!std::isfinite(sample.deviation[axis])) continue;
     band.push_back(
         axes.at(sample.along, sample.value[axis] + kDeviations * sample.deviation[axis]));
   }
   for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
+    if (!std::isfinite(sample->deviation[axis])) continue;
     band.push_back(
         axes.at(sample->along, sample->value[axis] - kDeviations * sample->deviation[axis]));
   }
@@ -108,7 +117,7 @@ void drawCurve(PictureCanvas& canvas, const Axes& axes, const std::vector<Sample
     line.push_back(axes.at(samples[i].along, samples[i].value[axis]));
   }
   const PictureCanvas::Clip clip(canvas, axes.rect);
-  canvas.fillPolygon(band, kBand);
+  if (!band.empty()) canvas.fillPolygon(band, kBand);
   canvas.lines(line, {2.5, kLine, {}});
 }
 
@@ -120,20 +129,18 @@ void writeDeformationPicture(const io::OutputPath& path, const Scene& scene) {
   const std::vector<Sample> samples = samplesOf(placed);
   constexpr std::array<const char*, 3> kNames = {"along the path", "to its left", "up"};
   constexpr int kHeight = static_cast<int>(kNames.size()) * (kPanelHeight + kPanelGap);
-  Page page(
-      kHeight + kAxisRoom + kMargin,
-      "Deformation: the strip beside the best affine, along its path",
-      fmt::format("centimetres over metres of path; {:.1f} cm RMS in the plane; left-out blocks "
-                  "confirm it by {:.1f} standard errors",
-                  100.0 * bend.rms, bend.gain),
-      scene.registration.verdict, true);
+  Page page(kHeight + kAxisRoom + kMargin,
+            "Deformation: the strip beside the best affine, along its path",
+            fmt::format("centimetres over metres of path; {:.1f} cm RMS in the plane; {}",
+                        100.0 * bend.rms, witnessesOf(bend)),
+            scene.registration.verdict, true);
   PictureCanvas& canvas = page.canvas;
   // One scale for all panels, so that they can be compared.
   double reach = kLeastReach;
   for (const Sample& sample : samples) {
     for (std::size_t axis = 0; axis < kNames.size(); ++axis) {
-      reach = std::max(
-          reach, 1.05 * (std::abs(sample.value[axis]) + kDeviations * sample.deviation[axis]));
+      const double band = std::isfinite(sample.deviation[axis]) ? sample.deviation[axis] : 0.0;
+      reach = std::max(reach, 1.05 * (std::abs(sample.value[axis]) + kDeviations * band));
     }
   }
   for (std::size_t axis = 0; axis < kNames.size(); ++axis) {
@@ -148,7 +155,9 @@ void writeDeformationPicture(const io::OutputPath& path, const Scene& scene) {
       canvas.lines(ends, {1.5, kSlip, {6.0, 4.0}});
     }
     drawCurve(canvas, axes, samples, axis);
-    canvas.text({static_cast<double>(axes.rect.x), top - 6.0}, kNames[axis],
+    const bool known = std::isfinite(samples.front().deviation[axis]);
+    canvas.text({static_cast<double>(axes.rect.x), top - 6.0},
+                known ? kNames[axis] : "up: not known, a cloud has no heights",
                 {13.0, palette::kInk, true, Align::kLeft});
   }
   std::vector<LegendItem> legend = {

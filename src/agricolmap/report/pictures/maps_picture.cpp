@@ -78,7 +78,7 @@ void drawMap(PictureCanvas& canvas, const Scene& scene, const MapLayer& layer,
   const double cells = static_cast<double>(layer.map().weight.size());
   canvas.text(
       {static_cast<double>(rect.x), rect.y + rect.height + 19.0},
-      fmt::format("{:.1f} × {:.1f} m, cells of {:g} cm, {:.0f} % seen, {} points",
+      fmt::format("{:.1f} × {:.1f} m, cells of {:.3g} cm, {:.0f} % seen, {} points",
                   frame.cols * frame.cell, frame.rows * frame.cell, 100.0 * frame.cell,
                   100.0 * static_cast<double>(layer.map().filled) / cells, layer.map().points),
       {13.0, palette::kFaint, false, Align::kLeft});

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/deform/deform.hpp"
 #include "agricolmap/report/draw/map_layer.hpp"
 #include "agricolmap/report/draw/outline.hpp"
 #include "agricolmap/report/draw/picture_canvas.hpp"
@@ -50,6 +53,10 @@ TEST_F(Pictures, AllAreWrittenAndDecode) {
     EXPECT_LT(picture.height(), 1600) << name;
     EXPECT_LT(fs::file_size(dir_ / name), 4000000U) << name;
     EXPECT_EQ(picture.share(isBannerRed), 0.0) << name;
+    // Nothing stands on the lower edge or is cut off by it.
+    for (int y = picture.height() - 8; y < picture.height(); ++y) {
+      for (int x = 0; x < picture.width(); ++x) ASSERT_EQ(picture.pixel(x, y), 0xFFFFFFU) << name;
+    }
     // Neither an empty page nor one flat panel.
     EXPECT_LT(picture.share([](int r, int g, int b) { return r + g + b == 3 * 255; }), 0.7) << name;
   }
@@ -92,6 +99,22 @@ TEST_F(Pictures, RejectionIsABanner) {
   for (const std::string& name : names) {
     EXPECT_GT(Picture(dir_ / name).share(isBannerRed), 0.02) << name;
   }
+}
+
+TEST_F(Pictures, ABendIsDrawnWhereHeightsAreNotKnown) {
+  pipeline::Registration registration = plainRegistration();
+  pipeline::Placed& placed = *registration.placed;
+  placed.uncertainty.emplace();
+  placed.uncertainty->height_deviation = std::numeric_limits<double>::infinity();
+  const auto laid = [](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+    return point + Eigen::Vector3d(0.0, 0.02 * std::sin(point.x()), 0.0);
+  };
+  placed.followed = pipeline::Followed{
+      deform::bendThrough(deform::Path({{0.0, 0.0}, {6.0, 0.0}}), placed.pose, 1.25, 0.005, laid),
+      registration.maps.moving};
+  writePictures(dir_, registration, kInfo);
+  const auto is_band = [](int r, int g, int b) { return r > 190 && g > r && b > g && b - r > 20; };
+  EXPECT_GT(Picture(dir_ / "deformation.png").share(is_band), 0.02);
 }
 
 TEST_F(Pictures, WithoutATransformOnlyMapsAndGuess) {
