@@ -41,6 +41,10 @@ bool isCompressedLas(std::string_view bytes) {
 
 }  // namespace
 
+bool isLas(CloudFormat format) {
+  return format == CloudFormat::kLas || format == CloudFormat::kLaz || format == CloudFormat::kCopc;
+}
+
 std::string endingOf(CloudFormat format) {
   switch (format) {
     case CloudFormat::kPcd:
