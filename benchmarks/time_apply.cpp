@@ -18,7 +18,7 @@
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 #include "process_cost.hpp"
-#include "support/exit_code.hpp"
+#include "support/run_main.hpp"
 
 namespace agricolmap {
 namespace {
@@ -187,37 +187,17 @@ int run(int argc, char** argv) {
   app.add_option("--drift", arguments.drift, "Drift of the robot's path, as a share [0.02]");
   app.add_option("--make-pair", arguments.make_pair, "Write the simulated pair there and stop");
   app.add_option("--make-cloud", arguments.make_cloud, "Write the cloud there and stop");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
-  }
-  if (!arguments.make_pair.empty()) {
-    writePair(arguments);
-    return 0;
-  }
-  if (!arguments.make_cloud.empty()) {
-    writeCloudOf(arguments);
-    return 0;
-  }
-  if (arguments.output.empty()) throw UsageError("needs --output FILE; see --help");
-  io::StagedFile output(arguments.output, true);
-  io::writeText(output.path(), Measurement(arguments).run());
-  output.commit();
-  return 0;
+  return runMain(app, argc, argv, [&] {
+    if (!arguments.make_pair.empty()) return writePair(arguments);
+    if (!arguments.make_cloud.empty()) return writeCloudOf(arguments);
+    if (arguments.output.empty()) throw UsageError("needs --output FILE; see --help");
+    io::StagedFile output(arguments.output, true);
+    io::writeText(output.path(), Measurement(arguments).run());
+    output.commit();
+  });
 }
 
 }  // namespace
 }  // namespace agricolmap
 
-int main(int argc, char** argv) {
-  try {
-    return agricolmap::run(argc, argv);
-  } catch (const agricolmap::Error& error) {
-    fmt::print(stderr, "agricolmap_time_apply: {}\n", error.what());
-    return static_cast<int>(agricolmap::exitCodeOf(error.kind()));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "agricolmap_time_apply: {}\n", error.what());
-    return static_cast<int>(agricolmap::ExitCode::kInternal);
-  }
-}
+int main(int argc, char** argv) { return agricolmap::run(argc, argv); }

@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/stopwatch.hpp"
 #include "agricolmap/io/cloud/cloud_stream.hpp"
+#include "support/run_main.hpp"
 
 namespace agricolmap {
 namespace {
@@ -70,30 +70,24 @@ int run(int argc, char** argv) {
   int threads = 2;
   int repeats = 3;
   CLI::App app{"How fast points come out of LAZ"};
+  app.name("agricolmap_time_decoding");
   app.add_option("FILE", path, "LAZ")->required();
   app.add_option("--threads", threads, "Number of threads [2]")->check(CLI::Range(1, 1024));
   app.add_option("--repeats", repeats, "Repeats [3]")->check(CLI::Range(1, 1000));
-  CLI11_PARSE(app, argc, argv);
-  const ThreadLimit limit(threads);
-  fmt::print("points,threads,repeat,laszip_s,laszip_cpu_s,stream_s,stream_cpu_s\n");
-  for (int repeat = 0; repeat < repeats; ++repeat) {
-    std::uint64_t points = 0;
-    const Seconds alone = secondsOf([&] { points = readByLaszip(path, threads); });
-    const Seconds ours = secondsOf([&] { io::streamCloud(path); });
-    fmt::print("{},{},{},{:.2f},{:.2f},{:.2f},{:.2f}\n", points, threads, repeat, alone.wall,
-               alone.cpu, ours.wall, ours.cpu);
-  }
-  return 0;
+  return runMain(app, argc, argv, [&] {
+    const ThreadLimit limit(threads);
+    fmt::print("points,threads,repeat,laszip_s,laszip_cpu_s,stream_s,stream_cpu_s\n");
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      std::uint64_t points = 0;
+      const Seconds alone = secondsOf([&] { points = readByLaszip(path, threads); });
+      const Seconds ours = secondsOf([&] { io::streamCloud(path); });
+      fmt::print("{},{},{},{:.2f},{:.2f},{:.2f},{:.2f}\n", points, threads, repeat, alone.wall,
+                 alone.cpu, ours.wall, ours.cpu);
+    }
+  });
 }
 
 }  // namespace
 }  // namespace agricolmap
 
-int main(int argc, char** argv) {
-  try {
-    return agricolmap::run(argc, argv);
-  } catch (const agricolmap::Error& error) {
-    fmt::print(stderr, "agricolmap_time_decoding: {}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return agricolmap::run(argc, argv); }

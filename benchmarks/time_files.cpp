@@ -19,6 +19,7 @@
 #include "agricolmap/simulate/simulate.hpp"
 #include "process_cost.hpp"
 #include "support/exit_code.hpp"
+#include "support/run_main.hpp"
 
 namespace agricolmap {
 namespace {
@@ -159,35 +160,15 @@ int run(int argc, char** argv) {
   app.add_option("--seed", arguments.seed, "Seed of the simulated pair [4242]");
   app.add_flag("--baseline", arguments.baseline, "Read and grid --fixed and --moving and stop");
   app.add_option("--make-pair", arguments.make_pair, "Write the simulated pair there and stop");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
-  }
-  if (arguments.baseline) {
-    readAndGrid(arguments);
-    return 0;
-  }
-  if (!arguments.make_pair.empty()) {
-    writePair(arguments.seed, arguments.make_pair);
-    return 0;
-  }
-  if (arguments.output.empty()) throw UsageError("needs --output FILE; see --help");
-  measure(arguments);
-  return 0;
+  return runMain(app, argc, argv, [&] {
+    if (arguments.baseline) return readAndGrid(arguments);
+    if (!arguments.make_pair.empty()) return writePair(arguments.seed, arguments.make_pair);
+    if (arguments.output.empty()) throw UsageError("needs --output FILE; see --help");
+    measure(arguments);
+  });
 }
 
 }  // namespace
 }  // namespace agricolmap
 
-int main(int argc, char** argv) {
-  try {
-    return agricolmap::run(argc, argv);
-  } catch (const agricolmap::Error& error) {
-    fmt::print(stderr, "agricolmap_time_files: {}\n", error.what());
-    return static_cast<int>(agricolmap::exitCodeOf(error.kind()));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "agricolmap_time_files: {}\n", error.what());
-    return static_cast<int>(agricolmap::ExitCode::kInternal);
-  }
-}
+int main(int argc, char** argv) { return agricolmap::run(argc, argv); }

@@ -11,18 +11,6 @@ namespace {
 
 class ApplyTest : public CliTest {
  protected:
-  static ProgramResult run(const std::vector<std::string>& arguments) {
-    ProgramResult result = runAgricolmap(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return result;
-  }
-  std::string converted(const std::string& from, const std::string& name,
-                        const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments{"convert", from, inFolder(name), "--quiet"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    run(arguments);
-    return inFolder(name);
-  }
   /// Registers into the folder "run".
   std::string registered(const std::string& fixed, const std::string& moving,
                          std::vector<std::string> more = {}) const {

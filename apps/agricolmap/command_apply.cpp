@@ -11,7 +11,6 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/cloud/move_file.hpp"
 #include "agricolmap/io/crs/crs.hpp"
-#include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/report/json/registration_file.hpp"
@@ -156,10 +155,7 @@ io::CopiedCloud apply(const Job& job, const report::StoredRegistration& run,
                    {frame.moving.get(), run.moving_origin, moveOf(run), frame.crs},
                    [&](std::uint64_t done) { progress.points(done, points); });
   printWarnings(copied.warnings);
-  if (!io::isLas(job.format) && !frame.crs.wkt.empty()) {
-    printWarnings({fmt::format("{}: {} has no place for the coordinate system, {}", job.name,
-                               io::endingOf(job.format), frame.crs.name)});
-  }
+  warnOfLostCrs(job.name, job.format, frame.crs);
   return copied;
 }
 

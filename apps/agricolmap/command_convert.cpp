@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
@@ -32,14 +33,9 @@ io::CloudFormat formatToWrite(const std::string& path) {
       "{}: its ending tells no format; known are .ply, .pcd, .las, .laz and .copc.laz", path));
 }
 
-struct Written {
-  std::uint64_t points = 0;
-  std::uint64_t left_out = 0;
-};
-
 /// From LAS to LAS point by point, with all that they have.
-Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudFormat format,
-                const io::CommonFrame* frame, const Crs& crs, Progress& progress) {
+io::CopiedCloud copyLas(const std::string& from, const io::OutputPath& to, io::CloudFormat format,
+                        const io::CommonFrame* frame, const Crs& crs, Progress& progress) {
   std::optional<io::CloudMove> move;
   if (frame != nullptr) {
     // Read for its origin alone: what is far from the others is left out as it is there.
@@ -50,14 +46,12 @@ Written copyLas(const std::string& from, const io::OutputPath& to, io::CloudForm
     move->crs = frame->crs;
   }
   const std::uint64_t points = io::pointsOf(from);
-  const io::CopiedCloud copied = io::copyLas(
-      from, to, format, move, crs, [&](std::uint64_t done) { progress.points(done, points); });
-  printWarnings(copied.warnings);
-  return {copied.points, copied.left_out};
+  return io::copyLas(from, to, format, move, crs,
+                     [&](std::uint64_t done) { progress.points(done, points); });
 }
 
-Written convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
-                   const io::OutputPath& to, io::CloudFormat format, Progress& progress) {
+io::CopiedCloud convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
+                           const io::OutputPath& to, io::CloudFormat format, Progress& progress) {
   const io::FileCrs crs = io::crsOfMap(from, arguments.crs);
   std::optional<io::CommonFrame> frame;
   if (!arguments.to_crs.empty()) frame = io::frameIn(crs, arguments.to_crs);
@@ -80,17 +74,11 @@ Written convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
   Cloud cloud = from.raster && !frame && arguments.crs.empty()
                     ? io::importOrthoDsm(from.main, from.model, options)
                     : io::readMap(from, {true, frame ? frame->moving.get() : nullptr}, options);
-  printWarnings(cloud.warnings);
   if (frame) cloud.crs = frame->crs;
   if (!frame && crs.crs) cloud.crs = *crs.crs;
-  if (!io::isLas(format) && !cloud.crs.wkt.empty()) {
-    printWarnings(
-        {fmt::format("{}: {} has no place for the coordinate system, {}; say it where "
-                     "the file is used",
-                     to.shown(), io::endingOf(format), cloud.crs.name)});
-  }
+  warnOfLostCrs(to.shown(), format, cloud.crs);
   io::writeCloud(to, cloud, format);
-  return {cloud.size(), cloud.dropped_points};
+  return {cloud.size(), cloud.dropped_points, std::move(cloud.warnings)};
 }
 
 ExitCode runConvert(ConvertArguments arguments, const Globals& globals) {
@@ -109,7 +97,8 @@ ExitCode runConvert(ConvertArguments arguments, const Globals& globals) {
   io::StagedFile output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step(from.raster ? "import" : "convert");
-  const Written written = convertMap(arguments, from, output.path(), format, progress);
+  const io::CopiedCloud written = convertMap(arguments, from, output.path(), format, progress);
+  printWarnings(written.warnings);
   output.commit();
   if (!globals.quiet) {
     fmt::print("{}: {} points, {} {}\n", arguments.output, written.points, written.left_out,

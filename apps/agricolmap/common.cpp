@@ -90,6 +90,12 @@ void printWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) spdlog::warn("{}", warning);
 }
 
+void warnOfLostCrs(const std::string& file, io::CloudFormat format, const Crs& crs) {
+  if (io::isLas(format) || crs.wkt.empty()) return;
+  spdlog::warn("{}: {} has no place for the coordinate system, {}; say it where the file is used",
+               file, io::endingOf(format), crs.name);
+}
+
 Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
                              const std::filesystem::path& moving, const std::string& prior_file,
                              std::string& source) {

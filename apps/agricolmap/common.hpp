@@ -13,6 +13,7 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/stopwatch.hpp"
+#include "agricolmap/io/cloud/cloud_format.hpp"
 #include "support/exit_code.hpp"
 
 namespace agricolmap {
@@ -77,6 +78,9 @@ std::string flagsFor(Remedy remedy);
 void requirePictures(bool no_pictures);
 /// To stderr, one line each, unless --quiet.
 void printWarnings(const std::vector<std::string>& warnings);
+
+/// Warns where a file of this format has no place for the coordinate system.
+void warnOfLostCrs(const std::string& file, io::CloudFormat format, const Crs& crs);
 
 /// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside
 /// each cloud (one that has none stands in world coordinates); else identity. Says which in

@@ -9,7 +9,6 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/cloud/move_file.hpp"
-#include "agricolmap/io/las/las_copy.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
 
 namespace agricolmap {

@@ -16,7 +16,7 @@
 #include "experiments/pairs/published.hpp"
 #include "experiments/runner/campaign.hpp"
 #include "revision.hpp"
-#include "support/exit_code.hpp"
+#include "support/run_main.hpp"
 #include "support/signal_stop.hpp"
 
 namespace agricolmap::experiments {
@@ -217,37 +217,20 @@ int run(int argc, char** argv) {
   CLI::App* runner = app.add_subcommand("run", "Run methods on the pairs of suites");
   addRunFlags(*runner, arguments);
   runner->callback([&] { action = [&] { runAll(arguments); }; });
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
-  }
-  const SignalStop signals;
-  const StopScope scope(signals.token());
-  action();
-  return 0;
+  spdlog::set_default_logger(spdlog::stderr_color_mt(app.get_name()));
+  spdlog::set_pattern("%^%l%$: %v");
+  return runMain(app, argc, argv, [&] {
+    const SignalStop signals;
+    const StopScope scope(signals.token());
+    try {
+      action();
+    } catch (const Interrupted&) {
+      throw Error(ErrorKind::kInterrupted, "interrupted; the same command goes on from here");
+    }
+  });
 }
 
 }  // namespace
 }  // namespace agricolmap::experiments
 
-int main(int argc, char** argv) {
-  using agricolmap::ExitCode;
-  const auto fail = [](const char* what, ExitCode code) {
-    fmt::print(stderr, "agricolmap_experiments: {}\n", what);
-    return static_cast<int>(code);
-  };
-  spdlog::set_default_logger(spdlog::stderr_color_mt("agricolmap_experiments"));
-  spdlog::set_pattern("%^%l%$: %v");
-  try {
-    return agricolmap::experiments::run(argc, argv);
-  } catch (const agricolmap::Interrupted&) {
-    return fail("interrupted; the same command goes on from here", ExitCode::kInterrupted);
-  } catch (const agricolmap::Error& error) {
-    return fail(error.what(), agricolmap::exitCodeOf(error.kind()));
-  } catch (const std::bad_alloc&) {
-    return fail("out of memory", ExitCode::kInternal);
-  } catch (const std::exception& error) {
-    return fail(error.what(), ExitCode::kInternal);
-  }
-}
+int main(int argc, char** argv) { return agricolmap::experiments::run(argc, argv); }

@@ -46,6 +46,20 @@ std::set<std::string> CliTest::entries(const std::string& below) const {
   return names;
 }
 
+ProgramResult CliTest::run(const std::vector<std::string>& arguments) {
+  ProgramResult result = runAgricolmap(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result;
+}
+
+std::string CliTest::converted(const std::string& from, const std::string& name,
+                               const std::vector<std::string>& options) const {
+  std::vector<std::string> arguments{"convert", from, inFolder(name), "--quiet"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  run(arguments);
+  return inFolder(name);
+}
+
 void CliTest::expectFailure(const std::vector<std::string>& arguments, int exit_code,
                             const std::vector<std::string>& parts) const {
   const std::set<std::string> before = entries();

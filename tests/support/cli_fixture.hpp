@@ -37,6 +37,11 @@ class CliTest : public ::testing::Test {
 
   /// Every file and folder below the working folder, relative to it.
   std::set<std::string> entries(const std::string& below = "") const;
+  /// Runs and expects success.
+  static ProgramResult run(const std::vector<std::string>& arguments);
+  /// `agricolmap convert` into the working folder; returns the path of the result.
+  std::string converted(const std::string& from, const std::string& name,
+                        const std::vector<std::string>& options = {}) const;
   /// Runs and expects `exit_code`, all of `parts` in what stderr says, and a working folder with
   /// exactly the entries that it had before.
   void expectFailure(const std::vector<std::string>& arguments, int exit_code,

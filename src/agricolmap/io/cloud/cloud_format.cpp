@@ -1,8 +1,6 @@
 #include "agricolmap/io/cloud/cloud_format.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "agricolmap/io/cloud/xyz_columns.hpp"
 #include "agricolmap/io/las/las_header.hpp"
@@ -43,6 +41,10 @@ bool isCompressedLas(std::string_view bytes) {
 
 }  // namespace
 
+bool isLas(CloudFormat format) {
+  return format == CloudFormat::kLas || format == CloudFormat::kLaz || format == CloudFormat::kCopc;
+}
+
 std::string endingOf(CloudFormat format) {
   switch (format) {
     case CloudFormat::kPcd:
@@ -62,9 +64,7 @@ std::string endingOf(CloudFormat format) {
 }
 
 std::optional<CloudFormat> formatByEnding(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = lowerCase(path.filename().string());
   for (const CloudFormat format : kFormats) {
     const std::string ending = endingOf(format);
     if (name.size() > ending.size() && name.ends_with(ending) &&

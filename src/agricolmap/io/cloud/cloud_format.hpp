@@ -17,6 +17,8 @@ enum class CloudFormat {
   kXyz,  ///< lines of text; read, never written
 };
 
+/// Whether a format is LAS: LAZ and COPC are, too.
+bool isLas(CloudFormat format);
 /// "ply", "copc.laz"
 std::string endingOf(CloudFormat format);
 /// Of those that are written, by the ending of a file's name, capitals or not; nothing where it is

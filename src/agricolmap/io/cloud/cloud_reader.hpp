@@ -18,9 +18,10 @@ namespace agricolmap::io {
 /// rounded to whole metres; see assembleCloud. What floats lose against the file's doubles grows
 /// with the distance to it: 0.06 µm at 1 m, 4 µm at 100 m, 30 µm at 1 km. Points with a NaN or an
 /// infinity, and those more than 20 km from the others, are left out, counted and warned of: (0, 0,
-/// 0), say, that exporters write for points that they do not have. A file without colours gives an
-/// empty `rgb`. Nothing is allocated on the header's word alone. Throws InputError naming file,
-/// place and reason when the file is not what its header says.
+/// 0), say, that exporters write for points that they do not have. So are points that LAS marks as
+/// withheld, those at one height far below all others, and those with odd colours. A file without
+/// colours gives an empty `rgb`. Nothing is allocated on the header's word alone. Throws InputError
+/// naming file, place and reason when the file is not what its header says.
 Cloud readCloud(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace agricolmap::io

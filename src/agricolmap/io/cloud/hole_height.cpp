@@ -15,21 +15,15 @@ constexpr double kTail = 0.01;
 void LowestHeights::take(double height) {
   if (height > lowest) {
     next = std::min(next, height);
-  } else if (height == lowest) {
-    ++count;
   } else if (height < lowest) {
     next = lowest;
     lowest = height;
-    count = 1;
   }
 }
 
 LowestHeights& LowestHeights::operator+=(const LowestHeights& other) {
-  if (other.count == 0) return *this;
-  const std::size_t own = count;
   take(other.lowest);
-  if (lowest == other.lowest) count = other.count + (count > 1 ? own : 0);
-  if (other.next > lowest) next = std::min(next, other.next);
+  take(other.next);
   return *this;
 }
 

@@ -12,7 +12,6 @@ namespace agricolmap::io {
 /// The two lowest heights of many.
 struct LowestHeights {
   double lowest = std::numeric_limits<double>::infinity();
-  std::size_t count = 0;  ///< of points at the lowest
   double next = std::numeric_limits<double>::infinity();
 
   void take(double height);

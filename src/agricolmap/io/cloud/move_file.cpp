@@ -45,10 +45,7 @@ std::uint64_t pointsOf(const std::filesystem::path& file) {
     case CloudFormat::kPcd:
       return parsePcdHeader(withoutMark(mapped.text()), name).points;
     case CloudFormat::kPly:
-      for (const PlyElement& element : parsePlyHeader(withoutMark(mapped.text()), name).elements) {
-        if (element.name == "vertex") return element.count;
-      }
-      return 0;
+      return vertexOf(parsePlyHeader(withoutMark(mapped.text()), name), name).count;
     case CloudFormat::kXyz:
       return 0;
     case CloudFormat::kLas:

@@ -223,6 +223,15 @@ TEST_F(MoveFile, WithoutCoordinatesThereIsNothingToMove) {
   test::expectError<InputError>([&] { moved("%PDF-1.4", {}); }, {"not a point cloud"});
 }
 
+TEST_F(MoveFile, FieldsAreFoundAsReadersFindThem) {
+  const std::string head = "ply\nformat ascii 1.0\nelement Vertex 1\nproperty float X\n";
+  const std::string rest = "property float Y\nproperty float Z\nend_header\n1 2 3\n";
+  moved(head + rest, {});
+  EXPECT_EQ(pointsOf(folder_ / "in"), 1U);
+  test::expectError<InputError>([&] { moved(head + "property float X\n" + rest, {}); },
+                                {"'x' is there twice"});
+}
+
 TEST_F(MoveFile, PointsThatTheProjectionDoesNotHaveAreSaid) {
   class Edge : public CoordinateMap {
     void apply(double* x, double* /*y*/, double* /*z*/, std::size_t count) const override {

@@ -33,14 +33,6 @@ char letterOf(ScalarType type) {
   return 'U';
 }
 
-bool isIdentity(const std::vector<std::string_view>& viewpoint) {
-  for (std::size_t i = 1; i < viewpoint.size(); ++i) {
-    const auto number = parseNumber(viewpoint[i]);
-    if (!number || *number != (i == 4 ? 1.0 : 0.0)) return false;
-  }
-  return true;
-}
-
 class PcdMove {
  public:
   PcdMove(const std::filesystem::path& from, const CloudMove& move)
@@ -49,14 +41,8 @@ class PcdMove {
     header_ = parsePcdHeader(text, name_);
     head_ = text.substr(0, header_.bytes);
     body_ = text.substr(header_.bytes);
-    std::vector<std::string_view> names;
-    for (const PcdField& field : header_.fields) {
-      names.push_back(field.count == 1 ? std::string_view(field.name) : std::string_view());
-      fields_.push_back({field.type, field.bytes()});
-    }
-    const auto points = PointFields::find(names);
-    if (!points) throw InputError(fmt::format("{}: it lacks one of the fields x, y, z", name_));
-    points_ = *points;
+    for (const PcdField& field : header_.fields) fields_.push_back({field.type, field.bytes()});
+    points_ = {coordinatesOf(header_, name_), findNormal(header_.valueNames(), name_)};
   }
 
   CopiedCloud write(const OutputPath& to, const CopyProgress& progress) {
@@ -83,7 +69,7 @@ class PcdMove {
       const std::vector<std::string_view> words = splitWords(line);
       const std::string_view key = words.empty() ? std::string_view() : words[0];
       if (key == "SIZE" || key == "TYPE") continue;
-      if (key == "VIEWPOINT" && !isIdentity(words)) {
+      if (key == "VIEWPOINT" && header_.hasPose()) {
         copied_.warnings.push_back(fmt::format(
             "{}: its VIEWPOINT is not taken along, as programs differ in what they mean by it",
             name_));

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <utility>
 
@@ -19,15 +18,6 @@
 namespace agricolmap::io {
 namespace {
 
-std::string lowered(std::string_view word) {
-  std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-bool isVertices(std::string_view element) { return lowered(element) == "vertex"; }
-
 /// The header with the coordinates' types changed to double, all else as it stands.
 std::string withDoubles(std::string_view header, const std::array<std::string, 3>& names) {
   std::string out;
@@ -36,7 +26,7 @@ std::string withDoubles(std::string_view header, const std::array<std::string, 3
     const std::size_t end = std::min(header.find_first_of("\r\n"), header.size());
     const std::string_view line = header.substr(0, end);
     const std::vector<std::string_view> words = splitWords(line);
-    if (words.size() >= 2 && words[0] == "element") in_vertices = isVertices(words[1]);
+    if (words.size() >= 2 && words[0] == "element") in_vertices = isVertex(words[1]);
     const bool coordinate = in_vertices && words.size() == 3 && words[0] == "property" &&
                             std::find(names.begin(), names.end(), words[2]) != names.end();
     out += coordinate ? fmt::format("property double {}", words[2]) : std::string(line);
@@ -55,22 +45,10 @@ class PlyMove {
     header_ = parsePlyHeader(text, name_);
     head_ = text.substr(0, header_.bytes);
     body_ = text.substr(header_.bytes);
-    const auto it = std::find_if(header_.elements.begin(), header_.elements.end(),
-                                 [](const PlyElement& e) { return isVertices(e.name); });
-    if (it == header_.elements.end()) {
-      throw InputError(fmt::format("{}: the header has no element 'vertex'", name_));
-    }
-    vertices_ = static_cast<std::size_t>(it - header_.elements.begin());
-    std::vector<std::string_view> names;
-    for (const PlyProperty& p : it->properties) {
-      names.push_back(p.list_count ? std::string_view() : std::string_view(p.name));
-      fields_.push_back({p.type, sizeOf(p.type)});
-    }
-    const auto points = PointFields::find(names);
-    if (!points) {
-      throw InputError(fmt::format("{}: its vertices lack one of the properties x, y, z", name_));
-    }
-    points_ = *points;
+    const PlyElement& vertex = vertexOf(header_, name_);
+    vertices_ = static_cast<std::size_t>(&vertex - header_.elements.data());
+    for (const PlyProperty& p : vertex.properties) fields_.push_back({p.type, sizeOf(p.type)});
+    points_ = {coordinatesOf(vertex, name_), findNormal(vertex.valueNames(), name_)};
   }
 
   /// Whether lists stand before the end of the vertices, of which only reading all tells how long
@@ -99,7 +77,7 @@ class PlyMove {
   /// What stays as it is although it may be about places, too.
   void noteOthers() {
     for (const PlyElement& element : header_.elements) {
-      const std::string name = lowered(element.name);
+      const std::string name = lowerCase(element.name);
       if (element.count == 0 || name == "vertex" || name == "face" || name == "edge") continue;
       copied_.warnings.push_back(
           fmt::format("{}: its element '{}' is kept as it stands; places in it are not moved",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxHeaderBytes = 1U << 20;
 constexpr std::uint64_t kMaxValues = 1U << 20;
+constexpr double kPoseTolerance = 1e-9;
 
 /// Parses line by line; keeps the place for messages.
 class Parser {
@@ -183,6 +185,33 @@ class Parser {
 };
 
 }  // namespace
+
+std::vector<std::string_view> PcdHeader::valueNames() const {
+  std::vector<std::string_view> names;
+  for (const PcdField& field : fields)
+    names.push_back(field.count == 1 ? std::string_view(field.name) : "");
+  return names;
+}
+
+bool PcdHeader::hasPose() const {
+  for (std::size_t i = 0; i < viewpoint.size(); ++i) {
+    const double value = i == 3 ? std::abs(viewpoint[i]) - 1.0 : viewpoint[i];
+    if (!(std::abs(value) <= kPoseTolerance)) return true;
+  }
+  return false;
+}
+
+std::string fieldsOf(const PcdHeader& header) {
+  std::vector<std::string> names;
+  for (const PcdField& field : header.fields) names.push_back(field.name);
+  return fieldList(names);
+}
+
+ThreeFields coordinatesOf(const PcdHeader& header, const std::string& name) {
+  if (const auto xyz = findFields(header.valueNames(), {"x", "y", "z"}, name)) return *xyz;
+  throw InputError(
+      fmt::format("{}: it lacks one of the fields x, y, z (it has {})", name, fieldsOf(header)));
+}
 
 PcdHeader parsePcdHeader(std::string_view text, const std::string& name) {
   return Parser(text, name).parse();

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "agricolmap/io/cloud/named_fields.hpp"
 #include "agricolmap/io/cloud/point_source.hpp"
 
 namespace agricolmap::io {
@@ -32,7 +33,16 @@ struct PcdHeader {
     for (const PcdField& field : fields) sum += field.bytes();
     return sum;
   }
+  /// As for findField.
+  std::vector<std::string_view> valueNames() const;
+  /// Whether a viewpoint is said that is more than the origin, not turned.
+  bool hasPose() const;
 };
+
+/// The names of all fields as one text.
+std::string fieldsOf(const PcdHeader& header);
+/// Which fields x, y and z are. Throws InputError when one is missing.
+ThreeFields coordinatesOf(const PcdHeader& header, const std::string& name);
 
 /// Throws InputError with file and line.
 PcdHeader parsePcdHeader(std::string_view text, const std::string& name);

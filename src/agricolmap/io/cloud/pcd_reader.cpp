@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -18,65 +16,26 @@
 namespace agricolmap::io {
 namespace {
 
-constexpr double kPoseTolerance = 1e-9;
-
 /// Which fields hold what.
 struct Roles {
-  std::array<std::size_t, 3> xyz{};
-  std::optional<std::array<std::size_t, 3>> colour;
+  ThreeFields xyz{};
+  std::optional<ThreeFields> colour;
   std::optional<std::size_t> packed;
 };
 
-/// The field of this name, or, where there is none, of this name with capitals.
-std::optional<std::size_t> findField(const PcdHeader& header, std::string_view name,
-                                     const std::string& file) {
-  std::optional<std::size_t> found;
-  for (const bool capitals : {false, true}) {
-    for (std::size_t i = 0; i < header.fields.size() && (!capitals || !found); ++i) {
-      const PcdField& field = header.fields[i];
-      if (field.count != 1 || (capitals ? lowerCase(field.name) : field.name) != name) continue;
-      if (found) throw InputError(fmt::format("{}: field '{}' is there twice", file, name));
-      found = i;
-    }
-  }
-  return found;
-}
-
-std::optional<std::array<std::size_t, 3>> findThree(const PcdHeader& header,
-                                                    const std::array<std::string_view, 3>& names,
-                                                    const std::string& file) {
-  std::array<std::size_t, 3> indices{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto index = findField(header, names[c], file);
-    if (!index) return std::nullopt;
-    indices[c] = *index;
-  }
-  return indices;
-}
-
-std::string fieldsOf(const PcdHeader& header) {
-  std::vector<std::string> names;
-  for (const PcdField& field : header.fields) names.push_back(field.name);
-  return fieldList(names);
-}
-
 Roles findRoles(const PcdHeader& header, const std::string& name, const ReadOptions& options) {
   Roles roles;
-  const auto xyz = findThree(header, {"x", "y", "z"}, name);
-  if (!xyz) {
-    throw InputError(
-        fmt::format("{}: it lacks one of the fields x, y, z (it has {})", name, fieldsOf(header)));
-  }
-  roles.xyz = *xyz;
+  roles.xyz = coordinatesOf(header, name);
   if (!options.colours) return roles;
-  roles.packed = findField(header, "rgb", name);
-  if (!roles.packed) roles.packed = findField(header, "rgba", name);
+  const std::vector<std::string_view> names = header.valueNames();
+  roles.packed = findField(names, "rgb", name);
+  if (!roles.packed) roles.packed = findField(names, "rgba", name);
   if (roles.packed && sizeOf(header.fields[*roles.packed].type) != 4) {
     throw InputError(fmt::format("{}: packed colours must have 4 bytes (float or uint32)", name));
   }
   if (roles.packed) return roles;
-  roles.colour = findThree(header, {"r", "g", "b"}, name);
-  if (!roles.colour) roles.colour = findThree(header, {"red", "green", "blue"}, name);
+  roles.colour = findFields(names, {"r", "g", "b"}, name);
+  if (!roles.colour) roles.colour = findFields(names, {"red", "green", "blue"}, name);
   return roles;
 }
 
@@ -163,15 +122,6 @@ void openData(const PcdHeader& header, const Roles& roles, std::string_view body
   warnOfRest(rest, "bytes", file);
 }
 
-/// Whether a pose is none: at zero, not turned.
-bool isIdentity(const std::vector<double>& viewpoint) {
-  for (std::size_t i = 0; i < viewpoint.size(); ++i) {
-    const double value = i == 3 ? std::abs(viewpoint[i]) - 1.0 : viewpoint[i];
-    if (!(std::abs(value) <= kPoseTolerance)) return false;
-  }
-  return true;
-}
-
 Eigen::Affine3d poseOf(const std::vector<double>& v) {
   Eigen::Quaterniond attitude(v[3], v[4], v[5], v[6]);
   if (!(attitude.norm() > 0.0)) attitude.setIdentity();
@@ -181,7 +131,7 @@ Eigen::Affine3d poseOf(const std::vector<double>& v) {
 void warnOfViewpoint(const PcdHeader& header, PointFile& file) {
   constexpr std::size_t kNumbers = 7;
   const std::vector<double>& v = header.viewpoint;
-  if (v.size() != kNumbers || isIdentity(v)) return;
+  if (v.size() != kNumbers || !header.hasPose()) return;
   file.notes.push_back(fmt::format(
       "{}: its VIEWPOINT is not applied, as programs differ in what they mean by it: points are "
       "taken as stored. If they are as the sensor saw them, write this line into an offset.xyz "

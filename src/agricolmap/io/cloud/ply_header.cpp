@@ -160,10 +160,36 @@ bool PlyElement::hasLists() const {
                      [](const PlyProperty& p) { return p.list_count.has_value(); });
 }
 
+std::vector<std::string_view> PlyElement::valueNames() const {
+  std::vector<std::string_view> names;
+  for (const PlyProperty& p : properties)
+    names.push_back(p.list_count ? "" : std::string_view(p.name));
+  return names;
+}
+
 std::size_t PlyElement::fixedBytes() const {
   std::size_t bytes = 0;
   for (const PlyProperty& p : properties) bytes += sizeOf(p.list_count.value_or(p.type));
   return bytes;
+}
+
+const PlyElement& vertexOf(const PlyHeader& header, const std::string& name) {
+  for (const PlyElement& element : header.elements) {
+    if (isVertex(element.name)) return element;
+  }
+  throw InputError(fmt::format("{}: the header has no element 'vertex'", name));
+}
+
+std::string fieldsOf(const PlyElement& vertex) {
+  std::vector<std::string> names;
+  for (const PlyProperty& property : vertex.properties) names.push_back(property.name);
+  return fieldList(names);
+}
+
+ThreeFields coordinatesOf(const PlyElement& vertex, const std::string& name) {
+  if (const auto xyz = findFields(vertex.valueNames(), {"x", "y", "z"}, name)) return *xyz;
+  throw InputError(fmt::format("{}: its vertices lack one of the properties x, y, z (they have {})",
+                               name, fieldsOf(vertex)));
 }
 
 PlyHeader parsePlyHeader(std::string_view text, const std::string& name) {

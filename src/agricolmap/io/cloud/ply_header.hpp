@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "agricolmap/io/cloud/named_fields.hpp"
 #include "agricolmap/io/cloud/point_source.hpp"
 
 namespace agricolmap::io {
@@ -23,6 +24,8 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   bool hasLists() const;
+  /// As for findField.
+  std::vector<std::string_view> valueNames() const;
   /// Bytes of one binary item; of its fixed part when it has lists.
   std::size_t fixedBytes() const;
 };
@@ -38,6 +41,13 @@ struct PlyHeader {
 
 /// Whether the name of an element is that of the points.
 bool isVertex(std::string_view element);
+
+/// The element of the points. Throws InputError when there is none.
+const PlyElement& vertexOf(const PlyHeader& header, const std::string& name);
+/// The names of all properties as one text.
+std::string fieldsOf(const PlyElement& vertex);
+/// Which properties x, y and z are. Throws InputError when one is missing.
+ThreeFields coordinatesOf(const PlyElement& vertex, const std::string& name);
 
 /// Types that nobody needs may be unknown. Throws InputError with file and line.
 PlyHeader parsePlyHeader(std::string_view text, const std::string& name);

@@ -15,54 +15,17 @@
 namespace agricolmap::io {
 namespace {
 
-using Names = std::array<std::string_view, 3>;
-constexpr std::array<Names, 3> kColourNames{
+constexpr std::array<std::array<std::string_view, 3>, 3> kColourNames{
     {{"red", "green", "blue"}, {"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}}};
-
-/// Indices of three properties of the vertex.
-using Indices = std::array<std::size_t, 3>;
-
-/// The property of this name, or, where there is none, of this name with capitals. Throws
-/// InputError when there are two.
-std::optional<std::size_t> findOne(const PlyElement& vertex, std::string_view name,
-                                   const std::string& file) {
-  std::optional<std::size_t> found;
-  for (const bool capitals : {false, true}) {
-    for (std::size_t i = 0; i < vertex.properties.size() && (!capitals || !found); ++i) {
-      const PlyProperty& p = vertex.properties[i];
-      if (p.list_count || (capitals ? lowerCase(p.name) : p.name) != name) continue;
-      if (found) throw InputError(fmt::format("{}: property '{}' is there twice", file, name));
-      found = i;
-    }
-  }
-  return found;
-}
-
-std::optional<Indices> findAll(const PlyElement& vertex, const Names& names,
-                               const std::string& file) {
-  Indices indices{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto index = findOne(vertex, names[c], file);
-    if (!index) return std::nullopt;
-    indices[c] = *index;
-  }
-  return indices;
-}
-
-std::string fieldsOf(const PlyElement& vertex) {
-  std::vector<std::string> names;
-  for (const PlyProperty& property : vertex.properties) names.push_back(property.name);
-  return fieldList(names);
-}
 
 /// The vertex element and what its properties mean.
 struct VertexLayout {
   const PlyElement* vertex = nullptr;
-  Indices xyz{};
-  std::optional<Indices> colour;
+  ThreeFields xyz{};
+  std::optional<ThreeFields> colour;
   bool partly_coloured = false;  ///< red or green, but not all three
 
-  std::array<ScalarType, 3> types(const Indices& indices) const {
+  std::array<ScalarType, 3> types(const ThreeFields& indices) const {
     const auto& p = vertex->properties;
     return {p[indices[0]].type, p[indices[1]].type, p[indices[2]].type};
   }
@@ -73,29 +36,21 @@ struct VertexLayout {
 
 VertexLayout vertexLayout(const PlyHeader& header, const std::string& name,
                           const ReadOptions& options) {
-  const auto it = std::find_if(header.elements.begin(), header.elements.end(),
-                               [](const PlyElement& e) { return isVertex(e.name); });
-  if (it == header.elements.end()) {
-    throw InputError(fmt::format("{}: the header has no element 'vertex'", name));
-  }
+  const PlyElement& vertex = vertexOf(header, name);
   VertexLayout layout;
-  layout.vertex = &*it;
-  const auto xyz = findAll(*it, {"x", "y", "z"}, name);
-  if (!xyz) {
-    throw InputError(fmt::format(
-        "{}: its vertices lack one of the properties x, y, z (they have {})", name, fieldsOf(*it)));
-  }
-  if (it->count == 0) throw InputError(fmt::format("{}: empty cloud: 0 vertices", name));
-  layout.xyz = *xyz;
+  layout.vertex = &vertex;
+  layout.xyz = coordinatesOf(vertex, name);
+  if (vertex.count == 0) throw InputError(fmt::format("{}: empty cloud: 0 vertices", name));
   if (!options.colours) return layout;
-  for (const Names& names : kColourNames) {
-    if (!layout.colour) layout.colour = findAll(*it, names, name);
+  const std::vector<std::string_view> names = vertex.valueNames();
+  for (const auto& colour : kColourNames) {
+    if (!layout.colour) layout.colour = findFields(names, colour, name);
   }
   const auto is_red = [](const PlyProperty& p) {
     return lowerCase(p.name) == "red" || lowerCase(p.name) == "green";
   };
   layout.partly_coloured =
-      !layout.colour && std::any_of(it->properties.begin(), it->properties.end(), is_red);
+      !layout.colour && std::any_of(vertex.properties.begin(), vertex.properties.end(), is_red);
   return layout;
 }
 
@@ -230,7 +185,7 @@ BinaryColumns columnsOf(const VertexLayout& layout, const std::byte* data, bool 
   };
   for (std::size_t axis = 0; axis < 3; ++axis) columns.xyz[axis] = column(layout.xyz[axis]);
   if (layout.colour) {
-    const Indices& c = *layout.colour;
+    const ThreeFields& c = *layout.colour;
     columns.colour = {column(c[0]), column(c[1]), column(c[2])};
   }
   return columns;
@@ -336,7 +291,7 @@ PointFile openPly(const MappedFile& file, const std::string& name, const ReadOpt
     opened.notes.push_back(fmt::format(
         "{}: its colours are incomplete (red, green and blue are needed); ignored", name));
   }
-  if (!layout.colour && findOne(*layout.vertex, "f_dc_0", name)) {
+  if (!layout.colour && findField(layout.vertex->valueNames(), "f_dc_0", name)) {
     opened.notes.push_back(fmt::format(
         "{}: its points are Gaussian splats: their centres are not measured, and their colours "
         "(f_dc_0 ...) are not read; take the coloured point cloud made from the same pictures",

@@ -77,7 +77,7 @@ struct Column {
   bool swap = false;  ///< bytes in the other order than this machine's
 };
 
-/// Points of fixed size in memory: PLY binary, PCD binary and uncompressed PCD columns.
+/// Points of fixed size in memory: binary PLY and PCD, and the decompressed columns of PCD.
 struct BinaryColumns {
   std::size_t points = 0;
   std::array<Column, 3> xyz;
@@ -126,8 +126,10 @@ inline constexpr double kMaxFromOrigin = 2e4;
 /// the cloud is, rounded to whole metres, or, where that lies more than 1 km off, the median of
 /// about 1000 points spread over the file. Points with a coordinate or colour that is not finite,
 /// and those more than 20 km from the origin along an axis, are dropped and counted, as are those
-/// that are withheld. Throws InputError naming `name` when no point is left, when more than half
-/// are too far off, or the colours fit no known range.
+/// that are withheld, those at a height that stands for holes (see holeHeight), and the few whose
+/// colours are outside the range of the others (see ColourTally). Throws InputError naming the file
+/// when no point is left, when more are too far off than are left, or the colours fit no known
+/// range.
 Cloud assembleCloud(const PointFile& file);
 
 /// Opens a cloud's file, told by its content; `file` and `options.map` must outlive it. Throws

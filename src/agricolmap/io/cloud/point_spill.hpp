@@ -7,31 +7,26 @@
 #include <string>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/output/scratch_file.hpp"
 
 namespace agricolmap::io {
 
 /// Points by their number, 12 bytes each and 3 more for colours, in the folder that TMPDIR names,
-/// else in /var/tmp (/tmp may be memory). The file has no name and ends with this, however the
-/// program does. Can be written and read from several threads at once.
+/// else in /var/tmp (/tmp may be memory). Everything throws OutputError. Can be written and read
+/// from several threads at once.
 class PointSpill {
  public:
-  /// Room for `points` of `source`, a name for messages. Throws OutputError where there is none.
+  /// Room for `points` of `source`, a name for messages.
   PointSpill(std::size_t points, bool coloured, const std::string& source);
-  ~PointSpill();
-  PointSpill(const PointSpill&) = delete;
-  PointSpill& operator=(const PointSpill&) = delete;
 
-  /// Throws OutputError.
   void write(std::size_t first, std::span<const Eigen::Vector3f> xyz, std::span<const Rgb> rgb);
-  /// What was written to these places. Throws InputError.
+  /// What was written to these places.
   void read(std::size_t first, std::span<Eigen::Vector3f> xyz, std::span<Rgb> rgb) const;
 
  private:
-  [[noreturn]] void failToWrite() const;
+  std::size_t coloursFrom(std::size_t first) const;
   std::size_t points_;
-  std::string source_;
-  std::string folder_;
-  int fd_ = -1;
+  ScratchFile file_;
 };
 
 }  // namespace agricolmap::io

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "agricolmap/io/output/write_behind.hpp"
-#include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -18,44 +17,18 @@ constexpr std::size_t kPerPlace = 32;
 /// Written between two times that the memory of the source is given back.
 constexpr std::size_t kForgetAfter = std::size_t{1} << 26;
 
-std::optional<std::size_t> indexOf(const std::vector<std::string_view>& names,
-                                   std::string_view name) {
-  const auto same = [&](std::string_view other) {
-    return std::equal(other.begin(), other.end(), name.begin(), name.end(),
-                      [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
-  };
-  // As it is spelled in the end, where both are there.
-  auto it = std::find(names.begin(), names.end(), name);
-  if (it == names.end()) it = std::find_if(names.begin(), names.end(), same);
-  if (it == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(it - names.begin());
-}
-
-std::optional<std::array<std::size_t, 3>> indicesOf(const std::vector<std::string_view>& names,
-                                                    const std::array<std::string_view, 3>& wanted) {
-  std::array<std::size_t, 3> indices{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto index = indexOf(names, wanted[i]);
-    if (!index) return std::nullopt;
-    indices[i] = *index;
-  }
-  return indices;
-}
-
 }  // namespace
 
-std::optional<PointFields> PointFields::find(const std::vector<std::string_view>& names) {
-  const auto xyz = indicesOf(names, {"x", "y", "z"});
-  if (!xyz) return std::nullopt;
-  PointFields fields{*xyz, indicesOf(names, {"nx", "ny", "nz"})};
-  if (!fields.normal) fields.normal = indicesOf(names, {"normal_x", "normal_y", "normal_z"});
-  return fields;
+std::optional<ThreeFields> findNormal(const std::vector<std::string_view>& names,
+                                      const std::string& file) {
+  const auto normal = findFields(names, {"nx", "ny", "nz"}, file);
+  return normal ? normal : findFields(names, {"normal_x", "normal_y", "normal_z"}, file);
 }
 
 RecordLayout::RecordLayout(const std::vector<RecordField>& fields, const PointFields& points,
                            bool as_double, bool swap)
     : swap_(swap) {
-  const auto axisOf = [](const std::array<std::size_t, 3>& indices, std::size_t field) {
+  const auto axisOf = [](const ThreeFields& indices, std::size_t field) {
     return static_cast<std::size_t>(std::find(indices.begin(), indices.end(), field) -
                                     indices.begin());
   };

@@ -4,10 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "agricolmap/io/cloud/named_fields.hpp"
 #include "agricolmap/io/cloud/point_mover.hpp"
 #include "agricolmap/io/cloud/point_source.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
@@ -22,12 +24,13 @@ struct RecordField {
 
 /// Which of a point's fields are its coordinates and its normal.
 struct PointFields {
-  std::array<std::size_t, 3> xyz{};
-  std::optional<std::array<std::size_t, 3>> normal;
-
-  /// By their names, capitals or not, of fields that have one value. Nothing without coordinates.
-  static std::optional<PointFields> find(const std::vector<std::string_view>& names);
+  ThreeFields xyz{};
+  std::optional<ThreeFields> normal;
 };
+
+/// Which fields are a normal, where there is one; `names` as for findField.
+std::optional<ThreeFields> findNormal(const std::vector<std::string_view>& names,
+                                      const std::string& file);
 
 /// How records are laid out before and after: coordinates may have become doubles.
 class RecordLayout {

@@ -46,6 +46,22 @@ bool takeItem(std::string_view& text, const TextItem& item, std::vector<std::str
   return true;
 }
 
+/// Three values of item number `index`.
+Eigen::Vector3d numbersOf(const std::vector<std::string_view>& words, const ThreeFields& fields,
+                          const TextItem& item, std::size_t index, const std::string& file) {
+  Eigen::Vector3d numbers;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string_view word = words[fields[axis]];
+    const auto number = parseNumber(word);
+    if (!number) {
+      throw InputError(
+          fmt::format("{}: {} {}: '{}' is no number", file, item.name, index + 1, word));
+    }
+    numbers[static_cast<Eigen::Index>(axis)] = *number;
+  }
+  return numbers;
+}
+
 /// Items that are moved together, and what becomes of them.
 struct Piece {
   std::string_view text;
@@ -85,18 +101,9 @@ class Pieces {
   }
 
  private:
-  Eigen::Vector3d vectorOf(const std::vector<std::string_view>& words,
-                           const std::array<std::size_t, 3>& indices, std::size_t item) const {
-    Eigen::Vector3d vector;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto number = parseNumber(words[indices[axis]]);
-      if (!number) {
-        throw InputError(fmt::format("{}: {} {}: '{}' is no number", file_, item_.name, item + 1,
-                                     words[indices[axis]]));
-      }
-      vector[static_cast<Eigen::Index>(axis)] = *number;
-    }
-    return vector;
+  Eigen::Vector3d vectorOf(const std::vector<std::string_view>& words, const ThreeFields& fields,
+                           std::size_t item) const {
+    return numbersOf(words, fields, item_, item, file_);
   }
 
   /// Appends what stands from `done` on to the item's last word that changes; returns its end.
@@ -154,16 +161,7 @@ std::vector<Eigen::Vector3d> samplesOf(std::string_view text, const TextItem& it
   std::vector<std::string_view> words;
   for (std::size_t i = 0; i < std::min(count, kSamples); ++i) {
     if (!takeItem(text, item, words)) break;
-    Eigen::Vector3d point;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto number = parseNumber(words[fields.xyz[axis]]);
-      if (!number) {
-        throw InputError(fmt::format("{}: {} {}: '{}' is no number", file, item.name, i + 1,
-                                     words[fields.xyz[axis]]));
-      }
-      point[static_cast<Eigen::Index>(axis)] = *number;
-    }
-    samples.push_back(point);
+    samples.push_back(numbersOf(words, fields.xyz, item, i, file));
   }
   return samples;
 }

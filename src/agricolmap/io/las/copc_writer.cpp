@@ -189,7 +189,8 @@ std::uint64_t writeCopc(const LasFeed& feed, const OutputPath& to, const CopyPro
   LasWriter writer(to, std::move(outline), LasWriter::Points::kChunks);
   Nodes nodes(writer, feed.outline().layout);
   {
-    ScratchFile scratch(to);
+    ScratchFile scratch(to.file().parent_path(),
+                        to.shown() + ": its records need room beside it for a while");
     const CopcParts parts(feed, cube, kPartBytes / feed.outline().layout.length);
     sortIntoParts(feed, cube, parts, scratch);
     writeNodes(feed.outline(), cube, parts, scratch, nodes, [&] {

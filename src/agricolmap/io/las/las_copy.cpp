@@ -54,10 +54,6 @@ std::uint64_t writeAs(CloudFormat format, const LasFeed& feed, const OutputPath&
 
 }  // namespace
 
-bool isLas(CloudFormat format) {
-  return format == CloudFormat::kLas || format == CloudFormat::kLaz || format == CloudFormat::kCopc;
-}
-
 CopiedCloud copyLas(const std::filesystem::path& from, const OutputPath& to, CloudFormat format,
                     const std::optional<CloudMove>& move, const Crs& crs,
                     const CopyProgress& progress) {

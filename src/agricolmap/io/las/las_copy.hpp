@@ -11,9 +11,6 @@
 
 namespace agricolmap::io {
 
-/// Whether a format is LAS: LAZ and COPC are, too.
-bool isLas(CloudFormat format);
-
 /// Copies the points of a LAS or LAZ file (COPC loses its order) with all that they have and all
 /// variable length records. Without `move` their records stay as they are to the bit, but for
 /// records that describe the file itself; with it coordinates are written in the steps of the

@@ -3,29 +3,32 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 
-#include "agricolmap/io/output/output_path.hpp"
-
 namespace agricolmap::io {
 
-/// A file without a name in the folder of a result: gone with this, whatever happens. Everything
-/// throws OutputError with the system's reason. From several threads at once.
+/// A file without a name: gone with this, however the program ends. Everything throws OutputError
+/// with the system's reason. Can be written and read from several threads at once.
 class ScratchFile {
  public:
-  /// `beside`: the result.
-  explicit ScratchFile(const OutputPath& beside);
+  /// `purpose` and `remedy` stand before and behind the reason in messages.
+  ScratchFile(const std::filesystem::path& folder, std::string purpose, std::string remedy = "");
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
+  /// Throws now, rather than at the last byte, where there is no room for so many. File systems
+  /// that cannot promise are believed.
+  void reserve(std::uint64_t bytes);
   void write(std::uint64_t offset, std::span<const std::byte> bytes);
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
  private:
-  [[noreturn]] void fail(const char* what) const;
-  std::string shown_;
+  [[noreturn]] void fail(int error) const;
+  std::string purpose_;
+  std::string remedy_;
   int fd_ = -1;
 };
 

@@ -10,21 +10,14 @@ namespace {
 
 using test::expectError;
 using test::Sheet;
+using test::surfaceModel;
 using test::TempDir;
 using test::writeSheet;
-
-Sheet heights() {
-  Sheet sheet;
-  sheet.bands = 1;
-  sheet.type = GDT_Float32;
-  sheet.value = [](int, int col, int row) { return 300.0 + 0.25 * col + 0.1 * row; };
-  return sheet;
-}
 
 TEST(MapFiles, AreTwoRastersWithACommaOrOneFile) {
   const TempDir dir;
   const std::string ortho = writeSheet(dir / "o.tif", {});
-  const std::string dsm = writeSheet(dir / "d,1.tif", heights());
+  const std::string dsm = writeSheet(dir / "d,1.tif", surfaceModel());
   const MapFiles both = mapFilesOf(ortho + "," + dsm);
   EXPECT_TRUE(both.raster);
   EXPECT_EQ(both.main, ortho);
@@ -40,7 +33,8 @@ TEST(MapFiles, AreTwoRastersWithACommaOrOneFile) {
 TEST(MapFiles, RastersAreCloudsInTheirOwnSystem) {
   const TempDir dir;
   const std::string ortho = writeSheet(dir / "o.tif", {});
-  const MapFiles both = mapFilesOf(ortho + "," + writeSheet(dir / "d.tif", heights()).string());
+  const MapFiles both =
+      mapFilesOf(ortho + "," + writeSheet(dir / "d.tif", surfaceModel()).string());
   EXPECT_EQ(crsOfMap(both).crs.value().name, "WGS 84 / UTM zone 32N");
   const Cloud cloud = readMap(both);
   ASSERT_EQ(cloud.size(), 48U);
@@ -56,7 +50,7 @@ TEST(MapFiles, RastersAreCloudsInTheirOwnSystem) {
 TEST(MapFiles, PassByAsTheyAreRead) {
   const TempDir dir;
   const std::string ortho = writeSheet(dir / "o.tif", {});
-  const std::string dsm = writeSheet(dir / "d.tif", heights());
+  const std::string dsm = writeSheet(dir / "d.tif", surfaceModel());
   const std::string lines = dir.write("lines.xyz", "1 2 3\n4 5 6\n7 8 9\n");
   for (const std::string& text : {ortho + "," + dsm, lines}) {
     const Cloud cloud = readMap(mapFilesOf(text));
@@ -80,7 +74,7 @@ TEST(MapFiles, RastersAreBroughtToTheSystemOfTheOther) {
   Sheet feet;
   feet.epsg = 2263;  // New York, US survey feet
   feet.place = {980000.0, 2.0, 0.0, 200000.0, 0.0, -2.0};
-  Sheet model = heights();
+  Sheet model = surfaceModel();
   model.epsg = 2263;
   model.place = feet.place;
   model.unit = "ft";

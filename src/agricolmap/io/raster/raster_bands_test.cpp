@@ -12,16 +12,9 @@ namespace {
 
 using test::expectError;
 using test::Sheet;
+using test::surfaceModel;
 using test::TempDir;
 using test::writeSheet;
-
-Sheet heights() {
-  Sheet sheet;
-  sheet.bands = 1;
-  sheet.type = GDT_Float32;
-  sheet.value = [](int, int col, int row) { return 300.0 + 0.25 * col + 0.1 * row; };
-  return sheet;
-}
 
 std::string textOf(const std::vector<std::string>& warnings) {
   std::string text;
@@ -35,7 +28,7 @@ TEST(RasterBands, HeightsComeInMetresWhateverTheirUnit) {
     const RasterHeights model = readHeights(writeSheet(dir / "d.tif", sheet));
     return std::pair(static_cast<double>(model.height(0, 0)), textOf(model.warnings));
   };
-  Sheet model = heights();
+  Sheet model = surfaceModel();
   EXPECT_EQ(height(model).first, 300.0);
   EXPECT_EQ(height(model).second, "");
   for (const std::string unit : {"ft", "foot", "Feet"}) {
@@ -84,7 +77,7 @@ TEST(RasterBands, WhatTransparencyTakesAwayIsTold) {
   sheet.alpha = true;
   sheet.value = [](int band, int col, int) { return band < 3 ? 100.0 : col < 2 ? 0.0 : 255.0; };
   const Cloud cloud =
-      importOrthoDsm(writeSheet(dir / "o.tif", sheet), writeSheet(dir / "d.tif", heights()));
+      importOrthoDsm(writeSheet(dir / "o.tif", sheet), writeSheet(dir / "d.tif", surfaceModel()));
   EXPECT_EQ(cloud.size(), 36U);
   EXPECT_NE(textOf(cloud.warnings).find("12 of its 48 pixels are transparent"), std::string::npos)
       << textOf(cloud.warnings);
@@ -145,14 +138,14 @@ TEST(RasterBands, APictureIsNoSurfaceModel) {
   hillshade.type = GDT_Float32;
   refused(hillshade, {"hillshade"});
   // Level ground at whole metres is none.
-  Sheet level = heights();
+  Sheet level = surfaceModel();
   level.value = [](int, int, int) { return 12.0; };
   EXPECT_EQ(readHeights(writeSheet(dir / "l.tif", level)).height(0, 0), 12.0F);
 }
 
 TEST(RasterBands, HolesDoNotReachIntoTheirNeighbours) {
   const TempDir dir;
-  Sheet model = heights();
+  Sheet model = surfaceModel();
   model.cols = 16;
   model.rows = 12;
   model.place = {500000.0, 0.25, 0.0, 5000000.0, 0.0, -0.25};

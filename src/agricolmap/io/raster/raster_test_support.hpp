@@ -37,6 +37,15 @@ struct Sheet {
   bool undeclared = false;              ///< nothing is said of what the bands are
 };
 
+/// Heights that rise with the columns and, less, with the rows.
+inline Sheet surfaceModel() {
+  Sheet sheet;
+  sheet.bands = 1;
+  sheet.type = GDT_Float32;
+  sheet.value = [](int, int col, int row) { return 300.0 + 0.25 * col + 0.1 * row; };
+  return sheet;
+}
+
 inline std::filesystem::path writeSheet(const std::filesystem::path& path, const Sheet& sheet) {
   GDALAllRegister();
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(sheet.driver.c_str());
