@@ -41,6 +41,7 @@ CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addControlPointsCommand(CLI::App& app, const Globals& globals);
 CommandSlot addApplyCommand(CLI::App& app, const Globals& globals);
+CommandSlot addFuseCommand(CLI::App& app, const Globals& globals);
 CommandSlot addConvertCommand(CLI::App& app, const Globals& globals);
 CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);

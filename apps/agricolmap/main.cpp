@@ -102,8 +102,8 @@ ExitCode run(int argc, char** argv) {
       addRegisterCommand(app, globals), addSimulateCommand(app, globals),
       addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
       addConvertCommand(app, globals),  addImportCommand(app, globals),
-      addApplyCommand(app, globals),    addInfoCommand(app, globals),
-      addDocumentCommand(app, globals)};
+      addApplyCommand(app, globals),    addFuseCommand(app, globals),
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;

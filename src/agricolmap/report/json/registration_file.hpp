@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,11 @@ struct StoredRegistration {
   Crs crs;                             ///< of all coordinates here, in metres; empty: nobody said
   std::optional<Crs> moving_file_crs;  ///< of the moving file itself, before it was brought there
   Eigen::Vector3d moving_origin = Eigen::Vector3d::Zero();  ///< about where it lies [m]
+
+  /// Expected RMS in the plane and deviation in height [m]; infinite where nobody knows.
+  double plane_error = std::numeric_limits<double>::infinity();
+  double height_error = std::numeric_limits<double>::infinity();
+  bool heights_limited = true;
 
   bool accepted() const { return status == "accepted"; }
 };

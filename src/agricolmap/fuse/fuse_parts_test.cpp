@@ -1,0 +1,172 @@
+// The parts that a shared map is made by.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "agricolmap/core/random.hpp"
+#include "agricolmap/fuse/adjustment.hpp"
+#include "agricolmap/fuse/ground.hpp"
+#include "agricolmap/fuse/owners.hpp"
+#include "agricolmap/fuse/strip_cells.hpp"
+#include "agricolmap/fuse/surface_map.hpp"
+#include "agricolmap/fuse/test_scene.hpp"
+
+namespace agricolmap::fuse {
+namespace {
+
+using test::groundCloud;
+
+TEST(CellFor, NestsAndLeavesRoom) {
+  EXPECT_DOUBLE_EQ(cellFor(0.014), 0.02);
+  EXPECT_DOUBLE_EQ(cellFor(0.02), 0.05);
+  EXPECT_DOUBLE_EQ(cellFor(0.004), 0.005);
+  EXPECT_DOUBLE_EQ(cellFor(0.0001), 0.005);
+}
+
+TEST(SurfaceMap, ShowsWhatLiesOnTop) {
+  Cloud cloud;
+  const auto add = [&](float x, float z, Rgb colour) {
+    cloud.xyz.emplace_back(x, 0.05F, z);
+    cloud.rgb.push_back(colour);
+  };
+  // A leaf over soil, and a point that flies above both.
+  for (int i = 0; i < 4; ++i) add(0.05F, 0.30F + 0.004F * static_cast<float>(i), {0, 200, 0});
+  add(0.05F, 0.0F, {100, 80, 60});
+  add(0.05F, 2.0F, {255, 255, 255});
+  add(0.15F, 0.1F, {100, 80, 60});
+  const map::GridMap map =
+      surfaceMap(CloudStream(cloud), {0.0, 0.0, 10.0}, {Eigen::Vector2d::Zero(), 0.1, 1, 3});
+  EXPECT_FLOAT_EQ(map.height(0, 0), 10.306F);
+  EXPECT_EQ(map.colour(0, 0), (Rgb{0, 200, 0}));
+  EXPECT_FLOAT_EQ(map.weight(0, 0), 6.0F);
+  EXPECT_FLOAT_EQ(map.height(0, 1), 10.1F);
+  EXPECT_FALSE(map.valid(0, 2));
+  EXPECT_EQ(map.filled, 2U);
+  const map::GridMap coarse = coarsened(map, 2);
+  EXPECT_FLOAT_EQ(coarse.height(0, 0), 0.5F * (10.306F + 10.1F));
+  EXPECT_FLOAT_EQ(coarse.weight(0, 0), 7.0F);
+  EXPECT_FALSE(coarse.valid(0, 1));
+}
+
+TEST(StripCells, SeesWhereItHasPointsAndNotBehindPlants) {
+  // A strip of 4 m x 2 m with a hole of 0.3 m, and a single point far aside.
+  Cloud cloud = groundCloud({2.0, 2.0}, {6.0, 4.0}, 0.01, [](double, double) { return 0.0; });
+  Cloud strip = cloud;
+  strip.xyz.clear();
+  strip.rgb.clear();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f& p = cloud.xyz[i];
+    if (std::abs(p.x() - 4.0F) < 0.15F && std::abs(p.y() - 3.0F) < 0.15F) continue;
+    strip.xyz.push_back(p);
+    strip.rgb.push_back(cloud.rgb[i]);
+  }
+  strip.xyz.emplace_back(7.5F, 3.0F, 0.0F);
+  strip.rgb.push_back({});
+  const Lattice lattice{{Eigen::Vector2d::Zero(), 0.05, 200, 200}, 5};
+  const StripCells cells = stripCells(CloudStream(strip), Eigen::Vector3d::Zero(), lattice, 0.2);
+  const auto at = [&](double x, double y) {
+    const auto col = static_cast<int>(x / 0.05) - cells.col;
+    const auto row = static_cast<int>(y / 0.05) - cells.row;
+    return cells.depth.contains(row, col) ? cells.depth(row, col) : 0.0F;
+  };
+  EXPECT_FLOAT_EQ(at(4.0, 3.0), 0.0F);   // the hole
+  EXPECT_FLOAT_EQ(at(7.52, 3.0), 0.0F);  // alone
+  EXPECT_FLOAT_EQ(at(1.0, 3.0), 0.0F);   // beyond the strip
+  EXPECT_NEAR(at(3.0, 2.42), 0.42, 0.06);
+  EXPECT_NEAR(at(3.0, 3.52), 0.48, 0.06);
+  EXPECT_DOUBLE_EQ(cells.fine.frame.cell, 0.01);
+}
+
+StripCells stripWith(double depth, int row, int col, int rows, int cols) {
+  StripCells cells;
+  cells.row = row;
+  cells.col = col;
+  cells.depth = Raster<float>(rows, cols, static_cast<float>(depth));
+  return cells;
+}
+
+TEST(Owners, DoNotDependOnTheOrderOfStrips) {
+  map::GridMap fixed;
+  fixed.frame = {Eigen::Vector2d::Zero(), 0.1, 4, 10};
+  fixed.weight = Raster<float>(4, 10, 1.0F);
+  fixed.weight(0, 0) = 0.0F;
+  const StripCells deep = stripWith(0.2, 1, 1, 2, 5), shallow = stripWith(0.1, 1, 4, 2, 5);
+  const std::vector<Claim> claims{{&deep, 2, 0, 0.01}, {&shallow, 3, 0, 0.01}};
+  const Raster<std::uint16_t> owners = ownersOf(fixed, claims);
+  EXPECT_EQ(owners(0, 0), kNoSource);
+  EXPECT_EQ(owners(0, 5), kFixedSource);
+  EXPECT_EQ(owners(1, 2), 2);
+  EXPECT_EQ(owners(1, 5), 2);  // both saw it, and one saw more around
+  EXPECT_EQ(owners(2, 7), 3);
+  const Raster<std::uint16_t> other = ownersOf(fixed, {claims[1], claims[0]});
+  EXPECT_TRUE(std::equal(owners.begin(), owners.end(), other.begin()));
+  // A later day counts first, and among equals the smaller error.
+  EXPECT_EQ(ownersOf(fixed, {{&deep, 2, 20260501, 0.01}, {&shallow, 3, 20260601, 0.05}})(1, 5), 3);
+  const StripCells same = stripWith(0.2, 1, 4, 2, 5);
+  EXPECT_EQ(ownersOf(fixed, {{&deep, 2, 0, 0.04}, {&same, 3, 0, 0.01}})(1, 5), 3);
+}
+
+TEST(Ground, LiesUnderPlantsAndFollowsSlopes) {
+  const GridFrame frame{Eigen::Vector2d::Zero(), 0.05, 200, 200};
+  Raster<float> surface(200, 200), cover(200, 200);
+  for (int r = 0; r < 200; ++r) {
+    for (int c = 0; c < 200; ++c) {
+      const bool plant = c % 10 < 6;
+      cover(r, c) = plant ? 1.0F : 0.0F;
+      surface(r, c) = 0.005F * static_cast<float>(c) + (plant ? 0.4F : 0.0F);  // 10 % of slope
+    }
+  }
+  const Raster<float> ground = groundOf(frame, surface, cover);
+  for (int c = 20; c < 180; ++c) EXPECT_NEAR(ground(100, c), 0.005 * c, 0.02) << c;
+}
+
+TEST(Ground, NobodyKnowsItUnderAClosedCanopy) {
+  const GridFrame frame{Eigen::Vector2d::Zero(), 0.05, 200, 400};
+  Raster<float> surface(200, 400, 0.5F), cover(200, 400, 1.0F);
+  for (int r = 0; r < 200; ++r) {
+    for (int c = 0; c < 20; ++c) surface(r, c) = cover(r, c) = 0.0F;
+  }
+  const Raster<float> ground = groundOf(frame, surface, cover);
+  EXPECT_NEAR(ground(100, 30), 0.0, 1e-3);
+  EXPECT_TRUE(std::isnan(ground(100, 300)));
+}
+
+/// Two strips of one field, the second of which is laid `off`.
+std::vector<StripCells> overlapping(const Eigen::Vector3d& off, const Lattice& lattice) {
+  const auto bumps = [](double x, double y) {
+    return 0.1 * std::sin(7.0 * x + 2.0 * std::sin(3.0 * y)) * std::cos(5.0 * y + x);
+  };
+  const Cloud first = groundCloud({1.0, 1.0}, {5.0, 3.0}, 0.01, bumps);
+  Cloud second = groundCloud({1.0, 2.0}, {5.0, 4.0}, 0.01, bumps);
+  for (Eigen::Vector3f& p : second.xyz) p += off.cast<float>();
+  const Eigen::Vector3d stay = Eigen::Vector3d::Zero();
+  return {stripCells(CloudStream(first), stay, lattice, 0.2),
+          stripCells(CloudStream(second), stay, lattice, 0.2)};
+}
+
+TEST(Adjustment, FindsHowFarStripsLieApartAndMovesTheWorse) {
+  const Lattice lattice{{Eigen::Vector2d::Zero(), 0.05, 120, 120}, 5};
+  const Eigen::Vector3d off(0.032, -0.017, 0.011);
+  const std::vector<StripCells> cells = overlapping(off, lattice);
+  const std::vector<StripErrors> errors{{0.005, 0.005}, {0.04, 0.02}};
+  const auto found = compareStrips({&cells[0], &cells[1]}, errors);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR((found[0].offset - off).norm(), 0.0, 0.004);
+  EXPECT_TRUE(found[0].plausible());
+  const auto shifts = adjustedShifts(found, errors);
+  EXPECT_LT(shifts[0].norm(), 0.005);
+  EXPECT_NEAR((shifts[0] - shifts[1] - off).norm(), 0.0, 0.01);
+}
+
+TEST(Adjustment, WhatNoErrorExplainsIsSaidAndNotSpreadOut) {
+  const Lattice lattice{{Eigen::Vector2d::Zero(), 0.05, 120, 120}, 5};
+  const std::vector<StripCells> cells = overlapping({0.2, 0.0, 0.0}, lattice);
+  const std::vector<StripErrors> errors{{0.01, 0.01}, {0.01, 0.01}};
+  const auto found = compareStrips({&cells[0], &cells[1]}, errors);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_FALSE(found[0].plausible());
+  EXPECT_TRUE(adjustedShifts(found, errors)[1].isZero());
+}
+
+}  // namespace
+}  // namespace agricolmap::fuse

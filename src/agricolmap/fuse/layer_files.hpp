@@ -1,0 +1,23 @@
+// The layers of a shared map as Cloud-Optimised GeoTIFFs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "agricolmap/fuse/shared_map.hpp"
+#include "agricolmap/io/output/output_path.hpp"
+
+namespace agricolmap::fuse {
+
+/// Where the file of that name, relative to the map's folder, is to be written.
+using Place = std::function<io::OutputPath(const std::string& name)>;
+
+/// Writes `layers/NAME.tif` over the whole field and, where strips own cells, in the strips'
+/// cells, `fine/STRIP_heights.tif` (surface, ground), `fine/STRIP.tif` (plant height, Excess Green,
+/// cover, density) and `fine/STRIP_colour.tif`. Returns their names. Throws OutputError, and
+/// UsageError in a build without GDAL.
+std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
+                                     const FuseOptions& options, const Crs& crs);
+
+}  // namespace agricolmap::fuse

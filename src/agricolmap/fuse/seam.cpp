@@ -1,0 +1,151 @@
+#include "agricolmap/fuse/seam.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace agricolmap::fuse {
+namespace {
+
+/// Differences beyond are no matter of heights [m].
+constexpr float kMostLeft = 1.0F;
+
+/// Sums over squares of a strip's surroundings, smoothed by boxes: what is left between strip and
+/// fixed cloud, and from how many cells.
+class Left {
+ public:
+  Left(int rows, int cols) : sum_(rows, cols, 0.0F), weight_(rows, cols, 0.0F) {}
+
+  void add(int row, int col, float value) {
+    sum_(row, col) += value;
+    weight_(row, col) += 1.0F;
+  }
+  /// Three passes of a box of 2·reach + 1 along both axes: nearly a Gaussian.
+  void smooth(int reach) {
+    for (int pass = 0; pass < 3; ++pass) {
+      for (Raster<float>* raster : {&sum_, &weight_}) {
+        alongRows(*raster, reach);
+        alongCols(*raster, reach);
+      }
+    }
+  }
+  /// Mean around a cell; 0 where there is none.
+  float at(int row, int col) const {
+    constexpr float kLeast = 1e-6F;
+    return weight_(row, col) > kLeast ? sum_(row, col) / weight_(row, col) : 0.0F;
+  }
+
+ private:
+  template <typename Get, typename Set>
+  static void box(int count, int reach, const Get& get, const Set& set) {
+    std::vector<double> sums(static_cast<std::size_t>(count) + 1, 0.0);
+    for (int i = 0; i < count; ++i) {
+      sums[static_cast<std::size_t>(i) + 1] =
+          sums[static_cast<std::size_t>(i)] + static_cast<double>(get(i));
+    }
+    const double share = 1.0 / (2 * reach + 1);
+    for (int i = 0; i < count; ++i) {
+      const auto low = static_cast<std::size_t>(std::max(0, i - reach));
+      const auto high = static_cast<std::size_t>(std::min(count, i + reach + 1));
+      set(i, static_cast<float>((sums[high] - sums[low]) * share));
+    }
+  }
+  static void alongRows(Raster<float>& raster, int reach) {
+    for (int row = 0; row < raster.rows(); ++row) {
+      box(
+          raster.cols(), reach, [&](int i) { return raster(row, i); },
+          [&](int i, float value) { raster(row, i) = value; });
+    }
+  }
+  static void alongCols(Raster<float>& raster, int reach) {
+    for (int col = 0; col < raster.cols(); ++col) {
+      box(
+          raster.rows(), reach, [&](int i) { return raster(i, col); },
+          [&](int i, float value) { raster(i, col) = value; });
+    }
+  }
+
+  Raster<float> sum_;
+  Raster<float> weight_;
+};
+
+/// Distance to the nearest cell that the strip saw [m], within a window.
+Raster<float> distanceTo(const StripCells& strip, int first_row, int first_col, int rows, int cols,
+                         double cell) {
+  const float straight = static_cast<float>(cell), across = 1.4F * static_cast<float>(cell);
+  Raster<float> distance(rows, cols, std::numeric_limits<float>::max());
+  const auto at = [&](int r, int c) {
+    return distance.contains(r, c) ? distance(r, c) : std::numeric_limits<float>::max() / 2.0F;
+  };
+  const auto sweep = [&](int row, int col, int back) {
+    if (strip.seen(first_row + row, first_col + col)) return 0.0F;
+    return std::min({distance(row, col), at(row, col - back) + straight,
+                     at(row - back, col) + straight, at(row - back, col - back) + across,
+                     at(row - back, col + back) + across});
+  };
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) distance(row, col) = sweep(row, col, 1);
+  }
+  for (int row = rows - 1; row >= 0; --row) {
+    for (int col = cols - 1; col >= 0; --col) distance(row, col) = sweep(row, col, -1);
+  }
+  return distance;
+}
+
+/// Leads the fixed cloud to one strip: adds to `correction`, weighted among strips.
+void addSeam(const FixedHeights& fixed, const Raster<float>& bias, const StripCells& strip,
+             double seam, Raster<float>& sums, Raster<float>& weights) {
+  const double cell = fixed.map.frame.cell;
+  const int margin = static_cast<int>(std::ceil(seam / cell)) + 1;
+  const int row = std::max(0, strip.row - margin), col = std::max(0, strip.col - margin);
+  const int rows = std::min(fixed.map.frame.rows, strip.row + strip.depth.rows() + margin) - row;
+  const int cols = std::min(fixed.map.frame.cols, strip.col + strip.depth.cols() + margin) - col;
+  if (rows <= 0 || cols <= 0) return;
+  Left left(rows, cols);
+  for (int r = 0; r < strip.depth.rows(); ++r) {
+    for (int c = 0; c < strip.depth.cols(); ++c) {
+      const int map_row = strip.row + r, map_col = strip.col + c;
+      if (strip.depth(r, c) <= 0.0F || !fixed.map.valid(map_row, map_col)) continue;
+      const float difference =
+          strip.coarse.height(r, c) - fixed.map.height(map_row, map_col) - bias(map_row, map_col);
+      if (std::abs(difference) < kMostLeft) left.add(map_row - row, map_col - col, difference);
+    }
+  }
+  left.smooth(std::max(1, static_cast<int>(std::lround(0.5 * seam / cell))));
+  const Raster<float> distance = distanceTo(strip, row, col, rows, cols, cell);
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < cols; ++c) {
+      const double way = static_cast<double>(distance(r, c)) / seam;
+      if (!(way < 1.0)) continue;
+      // From 1 at the strip to 0 with a level end.
+      const auto fade = static_cast<float>(0.5 + 0.5 * std::cos(way * std::numbers::pi));
+      sums(row + r, col + c) += fade * left.at(r, c) * fade;
+      weights(row + r, col + c) += fade;
+    }
+  }
+}
+
+}  // namespace
+
+Raster<float> heightCorrection(const FixedHeights& fixed, const std::optional<HeightBias>& bias,
+                               const std::vector<const StripCells*>& strips, double seam) {
+  const int rows = fixed.map.frame.rows, cols = fixed.map.frame.cols;
+  Raster<float> correction(rows, cols, 0.0F);
+  if (bias) {
+    for (std::size_t i = 0; i < correction.size(); ++i) {
+      const std::optional<HeightShift> shift = bias->at(fixed, i);
+      if (shift) correction[i] = static_cast<float>(shift->mean);
+    }
+  }
+  if (seam <= 0.0) return correction;
+  Raster<float> sums(rows, cols, 0.0F), weights(rows, cols, 0.0F);
+  for (const StripCells* strip : strips) addSeam(fixed, correction, *strip, seam, sums, weights);
+  for (std::size_t i = 0; i < correction.size(); ++i) {
+    if (weights[i] > 0.0F) correction[i] += sums[i] / weights[i];
+  }
+  return correction;
+}
+
+}  // namespace agricolmap::fuse

@@ -1,0 +1,264 @@
+#include "agricolmap/fuse/shared_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "agricolmap/core/error.hpp"
+#include "agricolmap/core/interrupt.hpp"
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/fuse/ground.hpp"
+#include "agricolmap/fuse/owners.hpp"
+#include "agricolmap/fuse/seam.hpp"
+#include "agricolmap/fuse/surface_map.hpp"
+#include "agricolmap/map/footprint.hpp"
+
+namespace agricolmap::fuse {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+/// Cells of the layers at most: about 3 GiB.
+constexpr double kMostCells = 4e7;
+/// A strip that moves less is not drawn anew [m].
+constexpr double kLeastMove = 5e-4;
+
+struct Extent {
+  map::Box2 box;  ///< in the map's frame
+  double spacing = 0.0;
+};
+
+Eigen::Vector3d shiftOf(const PointStream& cloud, const Eigen::Vector3d& origin) {
+  return cloud.facts().origin - origin;
+}
+
+Extent extentOf(const PointStream& cloud, const Eigen::Vector3d& origin) {
+  Eigen::Affine3d moved = Eigen::Affine3d::Identity();
+  moved.translation() = shiftOf(cloud, origin);
+  const map::Footprint footprint = map::footprintOf(cloud, moved);
+  return {footprint.box, footprint.spacing()};
+}
+
+GridFrame frameOf(const map::Box2& box, double cell) {
+  GridFrame frame;
+  frame.cell = cell;
+  const Eigen::Array2d low = (box.min().array() / cell).floor();
+  const Eigen::Array2d high = (box.max().array() / cell).ceil().max(low + 1.0);
+  frame.corner = (low * cell).matrix();
+  frame.cols = static_cast<int>(high.x() - low.x());
+  frame.rows = static_cast<int>(high.y() - low.y());
+  return frame;
+}
+
+/// Cells that the fixed cloud fills, those of strips that the densest of them fill.
+Lattice latticeOf(const PointStream& fixed, const std::vector<StripInput>& strips,
+                  const FuseOptions& options, std::vector<std::string>& warnings) {
+  const Eigen::Vector3d origin = fixed.facts().origin;
+  Extent all = extentOf(fixed, origin);
+  double spacing = std::numeric_limits<double>::infinity();
+  for (const StripInput& strip : strips) {
+    const Extent own = extentOf(*strip.points, origin);
+    if (!all.box.intersects(own.box)) {
+      throw InputError(fmt::format(
+          "{}: does not touch the fixed cloud; was it registered to another one?", strip.id));
+    }
+    spacing = std::min(spacing, own.spacing);
+  }
+  for (const StripInput& strip : strips) all.box.extend(extentOf(*strip.points, origin).box);
+  double cell = options.cell > 0.0 ? options.cell : cellFor(all.spacing);
+  const double area = all.box.volume();
+  if (area / (cell * cell) > kMostCells) {
+    const double least = cellFor(std::sqrt(area / kMostCells) / 1.2);
+    warnings.push_back(fmt::format(
+        "the layers have cells of {:.3g} m instead of {:.3g} m: finer ones of {:.0f} x {:.0f} m "
+        "take more memory than a map may",
+        least, cell, all.box.sizes().x(), all.box.sizes().y()));
+    cell = least;
+  }
+  const double fine = std::min(cell, cellFor(spacing));
+  return {frameOf(all.box, cell), std::max(1, static_cast<int>(std::lround(cell / fine)))};
+}
+
+std::vector<const StripCells*> cellsOf(const std::vector<FusedStrip>& strips) {
+  std::vector<const StripCells*> cells;
+  for (const FusedStrip& strip : strips) cells.push_back(&strip.cells);
+  return cells;
+}
+
+/// Those whose heights were measured: others were laid on what they are to correct.
+std::vector<const StripCells*> measuredOf(const std::vector<StripInput>& inputs,
+                                          const std::vector<FusedStrip>& strips) {
+  std::vector<const StripCells*> cells;
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    if (!inputs[i].heights_limited) cells.push_back(&strips[i].cells);
+  }
+  return cells;
+}
+
+/// Strips that overlap are moved to each other, and drawn anew where they moved.
+void adjust(const std::vector<StripInput>& inputs, const Eigen::Vector3d& origin,
+            const FuseOptions& options, SharedMap& map) {
+  std::vector<StripErrors> errors;
+  for (const FusedStrip& strip : map.strips) errors.push_back(strip.errors);
+  map.overlaps = compareStrips(cellsOf(map.strips), errors);
+  for (const Disagreement& pair : map.overlaps) {
+    if (pair.plausible()) continue;
+    map.warnings.push_back(fmt::format(
+        "{} and {} lie {:.0f} cm apart in the plane and {:.0f} cm in height where they overlap, "
+        "{:.1f} times what their errors allow: one of them is wrong",
+        map.strips[pair.first].id, map.strips[pair.second].id, 100.0 * pair.offset.head<2>().norm(),
+        100.0 * std::abs(pair.offset.z()), pair.sigmas));
+  }
+  if (!options.adjust) return;
+  const std::vector<Eigen::Vector3d> shifts = adjustedShifts(map.overlaps, errors);
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    if (shifts[i].norm() < kLeastMove) continue;
+    map.strips[i].moved = shifts[i];
+    map.strips[i].cells =
+        stripCells(*inputs[i].points, shiftOf(*inputs[i].points, origin) + shifts[i], map.lattice,
+                   options.least_seen);
+  }
+}
+
+Raster<float> coverOf(const map::GridMap& map, const Greenness& greenness) {
+  Raster<float> cover(map.frame.rows, map.frame.cols, kNone);
+  for (std::size_t i = 0; i < cover.size(); ++i) {
+    if (map.valid(i)) cover[i] = greenness.cover(map.exg[i]);
+  }
+  return cover;
+}
+
+Layers emptyLayers(const GridFrame& frame, const Eigen::Vector3d& origin) {
+  Layers layers;
+  layers.frame = frame;
+  layers.origin = origin;
+  for (Raster<float>* raster : {&layers.surface, &layers.exg, &layers.cover, &layers.density,
+                                &layers.plane_error, &layers.height_error}) {
+    *raster = Raster<float>(frame.rows, frame.cols, kNone);
+  }
+  layers.colour = Raster<Rgb>(frame.rows, frame.cols);
+  layers.date = Raster<std::int32_t>(frame.rows, frame.cols);
+  return layers;
+}
+
+void takeFixed(const FixedHeights& fixed, std::int32_t date, const SharedMap& map, Layers& layers) {
+  const auto per_area = static_cast<float>(1.0 / (fixed.map.frame.cell * fixed.map.frame.cell));
+  parallelFor(
+      layers.source.size(),
+      [&](std::size_t i) {
+        if (layers.source[i] != kFixedSource) return;
+        layers.surface[i] = fixed.map.height[i] + map.correction[i];
+        layers.exg[i] = fixed.map.exg[i];
+        layers.cover[i] = fixed.cover[i];
+        layers.density[i] = fixed.map.weight[i] * per_area;
+        layers.colour[i] = fixed.map.colour[i];
+        layers.date[i] = date;
+        layers.plane_error[i] = 0.0F;
+        const std::optional<HeightShift> shift = map.bias ? map.bias->at(fixed, i) : std::nullopt;
+        if (shift) layers.height_error[i] = static_cast<float>(shift->deviation);
+      },
+      1U << 14);
+}
+
+void takeStrip(FusedStrip& strip, bool coloured, Layers& layers) {
+  const double area = layers.frame.cell * layers.frame.cell;
+  const StripCells& cells = strip.cells;
+  for (int r = 0; r < cells.depth.rows(); ++r) {
+    for (int c = 0; c < cells.depth.cols(); ++c) {
+      if (cells.depth(r, c) <= 0.0F) continue;
+      strip.seen_area += area;
+      const std::size_t i = layers.source.index(cells.row + r, cells.col + c);
+      if (layers.source[i] != strip.code) continue;
+      strip.owned_area += area;
+      layers.surface[i] = cells.coarse.height(r, c);
+      layers.cover[i] = strip.greenness.cover(cells.coarse.exg(r, c));
+      layers.exg[i] = coloured ? strip.tone.exg(cells.coarse.exg(r, c)) : cells.coarse.exg(r, c);
+      layers.colour[i] =
+          coloured ? strip.tone(cells.coarse.colour(r, c)) : cells.coarse.colour(r, c);
+      layers.density[i] = cells.coarse.weight(r, c) / static_cast<float>(area);
+      layers.date[i] = strip.date;
+      layers.plane_error[i] = static_cast<float>(strip.errors.plane);
+      layers.height_error[i] = static_cast<float>(strip.errors.height);
+    }
+  }
+}
+
+/// Strips by their ids, so that nothing depends on the order in which they were named.
+std::vector<StripInput> sorted(std::vector<StripInput> strips) {
+  std::sort(strips.begin(), strips.end(),
+            [](const StripInput& a, const StripInput& b) { return a.id < b.id; });
+  for (std::size_t i = 1; i < strips.size(); ++i) {
+    if (strips[i].id == strips[i - 1].id) {
+      throw UsageError(fmt::format("two strips are called {}", strips[i].id));
+    }
+  }
+  return strips;
+}
+
+}  // namespace
+
+SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
+                   std::vector<StripInput> strips, const FuseOptions& options,
+                   const StepListener& on_step) {
+  checkOptions(options);
+  const auto step = [&](std::string_view what) {
+    throwIfInterrupted();
+    if (on_step) on_step(what);
+  };
+  const std::vector<StripInput> inputs = sorted(std::move(strips));
+  const Eigen::Vector3d origin = fixed.facts().origin;
+  SharedMap map;
+  step("extents");
+  map.lattice = latticeOf(fixed, inputs, options, map.warnings);
+
+  step("fixed cloud");
+  const map::GridMap drone = surfaceMap(fixed, Eigen::Vector3d::Zero(), map.lattice.frame);
+  map.fixed_greenness = greennessOf(drone);
+  step("strips");
+  for (const StripInput& input : inputs) {
+    FusedStrip& strip = map.strips.emplace_back();
+    strip.id = input.id;
+    strip.code = static_cast<std::uint16_t>(kFixedSource + map.strips.size());
+    strip.date = input.date;
+    strip.errors = input.errors;
+    strip.cells =
+        stripCells(*input.points, shiftOf(*input.points, origin), map.lattice, options.least_seen);
+  }
+  adjust(inputs, origin, options, map);
+  for (FusedStrip& strip : map.strips) {
+    strip.greenness = greennessOf(strip.cells.coarse);
+    strip.tone = toneOf(strip.cells, strip.greenness, drone, map.fixed_greenness);
+  }
+
+  step("heights");
+  const Raster<float> cover = coverOf(drone, map.fixed_greenness);
+  Raster<float> surface = drone.height;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    if (!drone.valid(i)) surface[i] = kNone;
+  }
+  const Raster<float> drone_ground = groundOf(map.lattice.frame, surface, cover);
+  const FixedHeights heights{drone, drone_ground, cover};
+  if (options.correct_heights) map.bias = heightBiasOf(heights, measuredOf(inputs, map.strips));
+  map.correction = heightCorrection(heights, map.bias, cellsOf(map.strips), options.seam);
+
+  step("layers");
+  std::vector<Claim> claims;
+  for (const FusedStrip& strip : map.strips) {
+    claims.push_back({&strip.cells, strip.code, strip.date,
+                      std::hypot(strip.errors.plane, strip.errors.height)});
+  }
+  map.layers = emptyLayers(map.lattice.frame, origin);
+  map.layers.source = ownersOf(drone, claims);
+  takeFixed(heights, fixed_date, map, map.layers);
+  for (FusedStrip& strip : map.strips) takeStrip(strip, options.match_colours, map.layers);
+  map.layers.ground = groundOf(map.lattice.frame, map.layers.surface, map.layers.cover);
+  map.layers.plant_height = map.layers.surface;
+  for (std::size_t i = 0; i < map.layers.ground.size(); ++i) {
+    map.layers.plant_height[i] -= map.layers.ground[i];
+  }
+  return map;
+}
+
+}  // namespace agricolmap::fuse
