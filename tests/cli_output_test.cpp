@@ -153,5 +153,39 @@ TEST_F(OutputTest, SimulationDrawsWhatItMade) {
   EXPECT_EQ(entries("pair").count("truth.txt"), 1U);
 }
 
+TEST_F(OutputTest, SimulationWritesStripsAndPlantsOfOneField) {
+  std::vector<std::string> field = {"simulate",
+                                    "--field.width",
+                                    "8",
+                                    "--field.height",
+                                    "8",
+                                    "--ugv.length",
+                                    "3",
+                                    "--no-pictures",
+                                    "--overwrite",
+                                    "-o",
+                                    inFolder("pair"),
+                                    "--strips",
+                                    "3"};
+  ASSERT_EQ(runAgricolmap(field).exit_code, 0);
+  const std::string first = contentOf(inFolder("pair/ugv/point_cloud.ply"));
+  const std::string third = contentOf(inFolder("pair/ugv_3/point_cloud.ply"));
+  EXPECT_NE(third, first);
+  for (const std::string name : {"prior_2.txt", "truth_3.txt", "truth_points_2.ply",
+                                 "ugv_2/offset.xyz", "ugv_3/path.txt", "truth_plants.csv"}) {
+    EXPECT_EQ(entries("pair").count(name), 1U) << name;
+  }
+  const std::string plants = contentOf(inFolder("pair/truth_plants.csv"));
+  EXPECT_TRUE(plants.starts_with("x,y,z,height,kind,row,radius\n")) << plants.substr(0, 80);
+  EXPECT_NE(plants.find(",crop,1,"), std::string::npos);
+  EXPECT_NE(plants.find(",weed,,"), std::string::npos);
+  // One strip is what it was among several, and nothing of the others stays beside it.
+  field.back() = "1";
+  ASSERT_EQ(runAgricolmap(field).exit_code, 0);
+  EXPECT_EQ(contentOf(inFolder("pair/ugv/point_cloud.ply")), first);
+  EXPECT_EQ(entries("pair").count("truth_2.txt"), 0U);
+  EXPECT_EQ(entries("pair").count("ugv_3/point_cloud.ply"), 0U);
+}
+
 }  // namespace
 }  // namespace agricolmap::test

@@ -89,7 +89,8 @@ io::PixelWindow OrthoArguments::windowFor(const simulate::SimulationOptions& opt
                                 static_cast<std::uint64_t>(options.seed));
 }
 
-simulate::SimulatedPair OrthoArguments::simulate(simulate::SimulationOptions& options) {
+std::unique_ptr<simulate::SimulatedOrtho> OrthoArguments::fly(
+    simulate::SimulationOptions& options) {
   flags_.apply(optionTable(file_options_));
   const io::PixelWindow window = windowFor(options);
   window_ = {window.col, window.row, window.cols, window.rows};
@@ -115,7 +116,7 @@ simulate::SimulatedPair OrthoArguments::simulate(simulate::SimulationOptions& op
                  options.uav.gsd);
     options.uav.gsd = field.gsd;
   }
-  return simulate::simulateFromOrtho(field, options);
+  return std::make_unique<simulate::SimulatedOrtho>(std::move(field), options);
 }
 
 std::string OrthoArguments::provenance() const {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,8 @@ class OrthoArguments {
   /// Whether the pair is to be made from an orthomosaic. Throws UsageError for flags that only make
   /// sense with one, or that make none with one; `flags` are those of the simulator.
   bool given(const OptionFlags& flags) const;
-  /// Reads the mosaic and simulates. Puts what was found or decided into `options`.
-  simulate::SimulatedPair simulate(simulate::SimulationOptions& options);
+  /// Reads the mosaic and flies over it. Puts what was found or decided into `options`.
+  std::unique_ptr<simulate::SimulatedOrtho> fly(simulate::SimulationOptions& options);
   /// The mosaic's, without its folder.
   std::string fileName() const { return std::filesystem::path(ortho_).filename(); }
   /// Comment lines that say what the pair was made from; after simulate().

@@ -79,6 +79,19 @@ SimulatedField::SimulatedField(const SimulationOptions& options)
                         madeUpBase(options.geotag));
 }
 
+std::vector<TruePlant> SimulatedField::plants() const {
+  const Visit flight = flightOf(options_.views, seedOf(options_, 2));
+  const Eigen::Vector2d size(options_.field.width, options_.field.height);
+  const Window window = makeWindow({0.0, 0.0}, 0.0, size.x(), size.y(), uavCell(options_));
+  const MosaicPieces pieces(options_.uav.mosaic, size, seedOf(options_, 5));
+  std::vector<TruePlant> plants = truePlants(field_, flight, window);
+  for (TruePlant& plant : plants) {
+    plant.stem.head<2>() += pieces.displacement(plant.stem.head<2>());
+    plant.stem += uav_.origin;
+  }
+  return plants;
+}
+
 SimulatedStrip SimulatedField::strip(const SimulationOptions& options, int index) const {
   checkOptions(options);
   if (!sameField(options, options_)) {

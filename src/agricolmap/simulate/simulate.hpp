@@ -8,6 +8,7 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/simulate/field/field_model.hpp"
+#include "agricolmap/simulate/field/plant_truth.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 
 namespace agricolmap::simulate {
@@ -56,6 +57,11 @@ class SimulatedField {
   /// share of leaves that it drew for itself are the field's. Strip 0 of the field's own options is
   /// that of simulatePair.
   SimulatedStrip strip(const SimulationOptions& options, int index = 0) const;
+
+  /// The plants and weeds of the field at the flight, in the UAV file's coordinates. In a map of
+  /// pieces each is where the piece that it lies in shows it, which near the borders of pieces may
+  /// be cut off or shown twice.
+  std::vector<TruePlant> plants() const;
 
  private:
   SimulationOptions options_;

@@ -8,79 +8,25 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <vector>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/robust.hpp"
-#include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/crs/srs.hpp"
 #include "agricolmap/io/raster/raster_bands.hpp"
-#include "agricolmap/io/text/foreign_file.hpp"
-#include "agricolmap/io/text/mapped_file.hpp"
+#include "agricolmap/io/raster/raster_dataset.hpp"
 
 namespace agricolmap::io {
 
 namespace {
 
-constexpr double kMaxPixels = 1e9;
 constexpr int kStripRows = 256;
 constexpr double kWhitePercentile = 0.995;
 constexpr std::size_t kSampleSize = 1U << 20;
 
 using Bands = ColourBands;
-
-[[noreturn]] void fail(const std::string& name, std::string_view what) {
-  const std::string reason = CPLGetLastErrorMsg();
-  throw InputError(fmt::format("{}: {}{}{}", name, what, reason.empty() ? "" : ": ", reason));
-}
-
-GDALDatasetUniquePtr openRaster(const std::filesystem::path& path) {
-  static std::once_flag registered;
-  std::call_once(registered, [] { GDALAllRegister(); });
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    throw InputError(fmt::format("{}: there is no such file", path.string()));
-  }
-  const char* const options[] = {"NUM_THREADS=ALL_CPUS", nullptr};
-  CPLErrorReset();
-  GDALDatasetUniquePtr dataset(
-      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, options));
-  if (!dataset) {
-    const std::string foreign = describeForeignFile(path);
-    const bool raster = looksLikeRaster(path);
-    if (!raster && !foreign.empty()) {
-      throw InputError(fmt::format("{}: is no raster: {}", path.string(), foreign));
-    }
-    if (!raster && std::filesystem::is_regular_file(path, error) &&
-        formatByContent(MappedFile(path).text())) {
-      throw InputError(fmt::format(
-          "{}: is a cloud; what is needed here is a raster, an orthomosaic or a surface "
-          "model (GeoTIFF)",
-          path.string()));
-    }
-    fail(path.string(), "cannot be read as a raster");
-  }
-  if (dataset->GetRasterCount() == 0) {
-    throw InputError(fmt::format("{}: has no bands of its own", path.string()));
-  }
-  return dataset;
-}
-
-RasterPlace placeOf(GDALDataset& dataset) {
-  RasterPlace place;
-  std::array<double, 6> g{};
-  if (dataset.GetGeoTransform(g.data()) == CE_None) {
-    Eigen::Affine2d world_from_pixel = Eigen::Affine2d::Identity();
-    world_from_pixel.linear() << g[1], g[2], g[4], g[5];
-    world_from_pixel.translation() << g[0], g[3];
-    place.world_from_pixel = world_from_pixel;
-  }
-  if (const char* wkt = dataset.GetProjectionRef()) place.crs = wkt;
-  return place;
-}
 
 /// The pixels to read and how many come of it.
 struct Section {
@@ -136,7 +82,7 @@ void readBand(GDALRasterBand& band, const Section& section, GDALDataType type, v
     if (band.RasterIO(GF_Read, window.col, window.row + row * step, window.cols, count * step, to,
                       section.cols, count, type, spacing,
                       static_cast<GSpacing>(section.cols) * spacing, nullptr) != CE_None) {
-      fail(name, fmt::format("damaged or truncated at row {}", window.row + row * step));
+      failRaster(name, fmt::format("damaged or truncated at row {}", window.row + row * step));
     }
   }
 }

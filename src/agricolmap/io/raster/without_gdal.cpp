@@ -1,7 +1,9 @@
-// Stands for raster_file.cpp and raster_place.cpp where GDAL is not built in.
+// Stands for what reads, places and writes rasters where GDAL is not built in.
 #include <fmt/format.h>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/io/raster/geo_reader.hpp"
+#include "agricolmap/io/raster/geo_writer.hpp"
 #include "agricolmap/io/raster/raster_file.hpp"
 #include "agricolmap/io/raster/raster_place.hpp"
 
@@ -10,7 +12,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& name) {
   throw UsageError(fmt::format(
-      "{}: reading rasters needs GDAL, and this build has none (AGRICOLMAP_WITH_GDAL)", name));
+      "{}: rasters need GDAL, and this build has none; build it with -DAGRICOLMAP_WITH_GDAL=ON",
+      name));
 }
 
 }  // namespace
@@ -37,5 +40,23 @@ std::optional<std::string> checkSameCrs(const std::string& name, const RasterPla
                                         const RasterPlace& /*other_place*/) {
   refuse(name);
 }
+
+LayerShape readLayerShape(const std::filesystem::path& path) { refuse(path.string()); }
+
+template <typename T>
+Layer<T> readLayer(const std::filesystem::path& path, const std::optional<CellWindow>& /*window*/) {
+  refuse(path.string());
+}
+
+template Layer<float> readLayer(const std::filesystem::path&, const std::optional<CellWindow>&);
+template Layer<std::uint8_t> readLayer(const std::filesystem::path&,
+                                       const std::optional<CellWindow>&);
+template Layer<std::uint16_t> readLayer(const std::filesystem::path&,
+                                        const std::optional<CellWindow>&);
+template Layer<std::int32_t> readLayer(const std::filesystem::path&,
+                                       const std::optional<CellWindow>&);
+template Layer<Rgb> readLayer(const std::filesystem::path&, const std::optional<CellWindow>&);
+
+void writeLayer(const OutputPath& path, const GeoLayer& /*layer*/) { refuse(path.shown()); }
 
 }  // namespace agricolmap::io

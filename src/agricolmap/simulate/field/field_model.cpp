@@ -231,6 +231,7 @@ void FieldModel::addRow(std::int64_t row, const Sown& sown, double u_min, double
     plant.tone = static_cast<float>(options_.tone_spread) * tone + plot.tone;
     plant.ripeness = plot.ripeness;
     plant.id = id;
+    plant.row = row;
     plant.species = sown.species;
     plants.push_back(plant);
   }

@@ -38,6 +38,7 @@ struct Plant {
   float ripeness = 0.0F;     ///< how much riper than the field, see ViewOptions::ripeness
   float brightness = 1.0F;   ///< factor on its reflectance
   std::uint64_t id = 0;      ///< seed of what is drawn for it
+  std::int64_t row = 0;      ///< of a sown plant, counted from the field's middle
   Species species = Species::kSoybean;
 };
 

@@ -266,8 +266,9 @@ std::vector<std::vector<std::uint32_t>> plantsPerTile(const std::vector<Plant>& 
   return lists;
 }
 
-/// Whether this visit does not find the plant.
-bool gone(const Plant& plant, const Visit& visit) {
+}  // namespace
+
+bool goneFor(const Visit& visit, const Plant& plant) {
   const auto drawn = [&](std::int64_t why, double share) {
     return hashUniform(plant.id, 1, why) < static_cast<float>(share);
   };
@@ -275,15 +276,13 @@ bool gone(const Plant& plant, const Visit& visit) {
   return grows(plant.species) && drawn(4, visit.plants_lost);
 }
 
-}  // namespace
-
 Canvas renderVisit(const FieldModel& field, const Visit& visit, const Window& window) {
   Canvas canvas;
   canvas.window = window;
   canvas.cells = Raster<Cell>(window.rows, window.cols);
   canvas.ground = Raster<float>(window.rows, window.cols);
   std::vector<Plant> plants = field.plantsIn(window, visit.reach());
-  std::erase_if(plants, [&](const Plant& plant) { return gone(plant, visit); });
+  std::erase_if(plants, [&](const Plant& plant) { return goneFor(visit, plant); });
   const SmoothSoil smooth = smoothSoil(field, window);
   const std::vector<Tile> tiles = tilesOf(window);
   const std::vector<std::vector<std::uint32_t>> lists =

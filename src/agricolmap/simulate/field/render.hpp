@@ -17,6 +17,9 @@ struct Visit : VisitPlants {
   double overcast = 0.3;       ///< the sky's share of light
 };
 
+/// Whether this visit does not find the plant.
+bool goneFor(const Visit& visit, const Plant& plant);
+
 Canvas renderVisit(const FieldModel& field, const Visit& visit, const Window& window);
 
 }  // namespace agricolmap::simulate
