@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <string>
+#include <thread>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
+#include "agricolmap/io/cloud/tiled_stream.hpp"
 #include "agricolmap/pipeline/registration.hpp"
 #include "agricolmap/simulate/simulate.hpp"
 
@@ -97,6 +99,30 @@ TEST_F(Stream, RegistersAsWhatIsKeptWithoutAGuess) {
   const Cloud cloud = io::readCloud(path);
   const auto stream = io::streamCloud(path, {.read = {}, .keep = 0, .on_pass = {}, .crs = {}});
   expectSame(registered(*stream, options), registered(CloudStream(cloud), options));
+}
+
+// One map for several strips at once: each answer is that of a registration by itself.
+TEST_F(Stream, SharedByStripsRegistersEachAsAlone) {
+  const CloudStream alone(pair_->uav);
+  std::vector<pipeline::RegistrationOptions> strips(3, pipeline::preset("default"));
+  strips[1].prior = PriorUncertainty::none();
+  strips[2].pieces.from = 5.0;  // a frame that is turned along the strip
+  const io::TiledStream tiled(alone);
+  const pipeline::FixedCloud shared(tiled);
+  std::vector<pipeline::Registration> found(strips.size());
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+      threads.emplace_back([&, i] {
+        Monitor monitor;
+        found[i] = pipeline::registerClouds(shared, pair_->ugv, pair_->prior, strips[i], monitor);
+      });
+    }
+  }
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    SCOPED_TRACE(i);
+    expectSame(found[i], registered(alone, strips[i]));
+  }
 }
 
 /// Ends in an error on the way, as a file on a disk that fails.

@@ -4,21 +4,13 @@
 #include <iostream>
 #include <memory>
 
-#include "agricolmap/config/json.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/angles.hpp"
-#include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
-#include "agricolmap/io/raster/map_files.hpp"
-#include "agricolmap/io/text/matrix_file.hpp"
-#include "agricolmap/io/text/path_file.hpp"
-#include "agricolmap/pipeline/followed.hpp"
-#include "agricolmap/pipeline/registration.hpp"
-#include "agricolmap/report/json/registration_json.hpp"
-#include "agricolmap/report/pictures/pictures.hpp"
 #include "common.hpp"
 #include "pair_files.hpp"
 #include "register_options.hpp"
+#include "register_run.hpp"
 
 namespace agricolmap {
 namespace {
@@ -53,67 +45,6 @@ void printSummary(const pipeline::Registration& result, const std::string& direc
   fmt::print("results in {}\n", directory);
 }
 
-/// The command line as one line of text, quoted where a shell would need it.
-std::string commandText(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (!text.empty()) text += ' ';
-    const bool plain =
-        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?&|;<>()[]{}#~!") == std::string::npos;
-    if (plain) {
-      text += word;
-      continue;
-    }
-    text += '\'';
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    text += '\'';
-  }
-  return text;
-}
-
-report::RegistrationReportInfo reportInfo(const RegisterArguments& arguments,
-                                          const Globals& globals, const OptionTable& table) {
-  report::RegistrationReportInfo info;
-  info.version = AGRICOLMAP_VERSION;
-  info.threads = globals.threads;
-  info.command_line = commandText(globals.command_line);
-  info.preset = arguments.options.preset();
-  info.options = config::toJson(table);
-  return info;
-}
-
-/// Where the registration puts points of the moving file.
-io::PointMove moveOf(const pipeline::Registration& result, const Cloud& moving) {
-  const Eigen::Affine3d& fixed_from_moving = result.transform->fixed_from_moving;
-  if (!result.bent()) return fixed_from_moving;
-  return {fixed_from_moving, [function = pipeline::Displacement(result, moving).function()](
-                                 const Eigen::Vector3d& point) { return function.at(point); }};
-}
-
-/// Fills `output` with everything but the report.
-std::vector<std::string> writeResults(const RegisterArguments& arguments,
-                                      const pipeline::RegistrationOptions& options,
-                                      const LoadedPair& pair, const pipeline::Registration& result,
-                                      const io::StagedOutput& output, Monitor& monitor) {
-  const bool keep = result.transform && (result.verdict.status == verdict::Status::kAccepted ||
-                                         arguments.keep_rejected);
-  if (keep) {
-    monitor.run(Stage::kWrite, [&] {
-      const Eigen::Affine3d& fixed_from_moving = result.transform->fixed_from_moving;
-      io::writeMatrix(output.path("transform.txt"), fixed_from_moving, transformComment(pair));
-      const auto warnings =
-          writeAligned(arguments.files, pair, moveOf(result, pair.moving), output);
-      printWarnings(warnings);
-      for (const std::string& warning : warnings) monitor.warn(warning);
-    });
-  }
-  if (arguments.no_pictures) return {};
-  return monitor.run(Stage::kPictures, [&] {
-    return report::writePictures(output.folder(), result,
-                                 {arguments.files.fixed, arguments.files.moving, options.evidence});
-  });
-}
-
 ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals) {
   pipeline::RegistrationOptions options = arguments.options.chosen(globals);
   const OptionTable table = optionTable(options);
@@ -130,43 +61,25 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   Monitor monitor(globals.stop, [&](Stage stage) { progress.step(nameOf(stage)); });
-  report::RegistrationReportInfo info = reportInfo(arguments, globals, table);
-  info.seed = static_cast<std::uint64_t>(options.seed);
-  info.prior =
-      initialGuess(io::mapFilesOf(arguments.files.fixed).main,
-                   io::mapFilesOf(arguments.files.moving).main, arguments.prior, info.prior_source);
-  const LoadedPair pair = monitor.run(Stage::kRead, [&] {
-    return loadPair(arguments.files,
-                    [&](std::size_t seen, std::size_t of) { progress.points(seen, of); });
-  });
-  info.fixed_file_crs = pair.frame.fixed_file;
-  info.moving_file_crs = pair.frame.moving_file;
-  for (const std::string& warning : pair.frame.warnings) monitor.warn(warning);
-  printWarnings(pair.fixed->facts().warnings);
-  printWarnings(pair.moving.warnings);
-  const std::vector<Eigen::Vector3d> path =
-      arguments.path.empty() ? std::vector<Eigen::Vector3d>{} : io::readPath(arguments.path);
+  RegisterRun run;
+  run.files = arguments.files;
+  run.prior = arguments.prior;
+  run.path = arguments.path;
+  run.keep_rejected = arguments.keep_rejected;
+  run.pictures = !arguments.no_pictures;
+  run.preset = arguments.options.preset();
+  run.options = options;
+  run.command_line = commandText(globals.command_line);
+  run.threads = globals.threads;
+  const FixedSource fixed = [&](const io::MapFiles& files, const io::CommonFrame& frame) {
+    return streamedFixed(files, frame,
+                         [&](std::size_t seen, std::size_t of) { progress.points(seen, of); });
+  };
   const pipeline::Registration result =
-      pipeline::registerClouds(*pair.fixed, pair.moving, info.prior, options, monitor, {}, path);
-  printWarnings(monitor.warnings());
-  info.pictures = writeResults(arguments, options, pair, result, output, monitor);
-  report::writeRegistrationJson(output.path("registration.json"), *pair.fixed, pair.moving, result,
-                                monitor, info);
-  throwIfInterrupted();
-  std::vector<std::string> stale = report::pictureNames();
-  stale.emplace_back("transform.txt");
-  for (const std::string& name : alignedNames()) stale.push_back(name);
-  output.commit(stale);
+      registerInto(run, fixed, output, monitor, printWarnings).registration;
+  output.commit(staleResults());
   if (!globals.quiet) printSummary(result, arguments.output);
-  switch (result.verdict.status) {
-    case verdict::Status::kAccepted:
-      return ExitCode::kOk;
-    case verdict::Status::kAmbiguous:
-      return ExitCode::kAmbiguous;
-    case verdict::Status::kRejected:
-      break;
-  }
-  return ExitCode::kRejected;
+  return exitCodeOf(result.verdict.status);
 }
 
 }  // namespace

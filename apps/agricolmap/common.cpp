@@ -98,7 +98,7 @@ void warnOfLostCrs(const std::string& file, io::CloudFormat format, const Crs& c
 
 Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
                              const std::filesystem::path& moving, const std::string& prior_file,
-                             std::string& source) {
+                             std::string& source, const Say& say) {
   if (!prior_file.empty()) {
     source = prior_file;
     return io::readMatrix(prior_file);
@@ -107,8 +107,9 @@ Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
   const auto world_from_moving = io::readOffsetBeside(moving);
   for (const std::filesystem::path& cloud : {fixed, moving}) {
     for (const std::string& file : io::offsetsPassedBy(cloud)) {
-      spdlog::warn("{} is passed by: were it the offset of {}, it would be called {}.offset.xyz",
-                   file, cloud.string(), cloud.stem().string());
+      say({fmt::format(
+          "{} is passed by: were it the offset of {}, it would be called {}.offset.xyz", file,
+          cloud.string(), cloud.stem().string())});
     }
   }
   if (!world_from_fixed && !world_from_moving) {
@@ -118,9 +119,9 @@ Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
   source = "offset.xyz";
   const Eigen::Affine3d identity = Eigen::Affine3d::Identity();
   if (!world_from_fixed || !world_from_moving) {
-    spdlog::warn("only {} has an offset.xyz; {} is taken to be in world coordinates already",
-                 (world_from_fixed ? fixed : moving).string(),
-                 (world_from_fixed ? moving : fixed).string());
+    say({fmt::format("only {} has an offset.xyz; {} is taken to be in world coordinates already",
+                     (world_from_fixed ? fixed : moving).string(),
+                     (world_from_fixed ? moving : fixed).string())});
     source = "offset.xyz of one cloud";
   }
   return world_from_fixed.value_or(identity).inverse(Eigen::Isometry) *

@@ -36,6 +36,7 @@ struct CommandSlot {
   CLI::App* app;
   Command run;
 };
+CommandSlot addBatchCommand(CLI::App& app, const Globals& globals);
 CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals);
 CommandSlot addSimulateCommand(CLI::App& app, const Globals& globals);
 CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals);
@@ -63,6 +64,8 @@ class Progress {
   /// Of the step's present pass over a cloud, `seen` of `of` points are done. Passes that are short
   /// are not worth a word.
   void points(std::size_t seen, std::size_t of);
+  /// Takes the line away, for something else to be said.
+  void clear() const { show(""); }
 
  private:
   void show(std::string_view text) const;
@@ -79,6 +82,8 @@ std::string flagsFor(Remedy remedy);
 void requirePictures(bool no_pictures);
 /// To stderr, one line each, unless --quiet.
 void printWarnings(const std::vector<std::string>& warnings);
+/// Hears what the user should know, as it is found.
+using Say = std::function<void(const std::vector<std::string>&)>;
 
 /// Warns where a file of this format has no place for the coordinate system.
 void warnOfLostCrs(const std::string& file, io::CloudFormat format, const Crs& crs);
@@ -88,6 +93,6 @@ void warnOfLostCrs(const std::string& file, io::CloudFormat format, const Crs& c
 /// `source`.
 Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
                              const std::filesystem::path& moving, const std::string& prior_file,
-                             std::string& source);
+                             std::string& source, const Say& say);
 
 }  // namespace agricolmap

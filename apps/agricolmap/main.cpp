@@ -28,12 +28,14 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 done, registration accepted; 1 internal error; 2 bad usage; 3 bad input;\n"
-    "4 output cannot be written; 10 registration rejected; 11 ambiguous; 130 interrupted.\n"
+    "4 output cannot be written; 10 registration rejected; 11 ambiguous; 12 some strips of a "
+    "batch\n"
+    "failed; 130 interrupted.\n"
     "Lengths are metres, maps are LAS, LAZ, PLY, PCD, text or ORTHO.tif,DSM.tif, transforms map "
     "MOVING to FIXED file coordinates.";
 
 void setUpLogging(const Globals& globals) {
-  spdlog::set_default_logger(spdlog::stderr_color_st("agricolmap"));
+  spdlog::set_default_logger(spdlog::stderr_color_mt("agricolmap"));
   spdlog::set_pattern("%^%l%$: %v");
   spdlog::set_level(globals.quiet         ? spdlog::level::err
                     : globals.verbose > 0 ? spdlog::level::debug
@@ -101,9 +103,10 @@ ExitCode run(int argc, char** argv) {
   const std::vector<CommandSlot> commands = {
       addRegisterCommand(app, globals), addSimulateCommand(app, globals),
       addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
-      addConvertCommand(app, globals),  addImportCommand(app, globals),
-      addApplyCommand(app, globals),    addFuseCommand(app, globals),
-      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
+      addBatchCommand(app, globals),    addConvertCommand(app, globals),
+      addImportCommand(app, globals),   addApplyCommand(app, globals),
+      addFuseCommand(app, globals),     addInfoCommand(app, globals),
+      addDocumentCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;

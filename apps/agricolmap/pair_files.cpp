@@ -47,31 +47,39 @@ io::CloudFormat formatNamed(const std::string& flag, const std::string& name) {
   throw UsageError(fmt::format("{} {}: is none of ply, pcd, las, laz, copc and auto", flag, name));
 }
 
-LoadedPair loadPair(const PairFiles& files,
-                    const std::function<void(std::size_t, std::size_t)>& on_pass) {
+std::shared_ptr<const LoadedFixed> streamedFixed(
+    const io::MapFiles& files, const io::CommonFrame& frame,
+    const std::function<void(std::size_t, std::size_t)>& on_pass) {
+  io::StreamOptions options;
+  options.read.map = frame.fixed.get();
+  options.on_pass = on_pass;
+  options.crs = frame.crs;
+  return std::make_shared<const LoadedFixed>(io::streamMap(files, options));
+}
+
+io::CommonFrame frameOf(const PairFiles& files) {
+  return io::commonFrame(io::crsOfMap(io::mapFilesOf(files.fixed), files.fixed_crs),
+                         io::crsOfMap(io::mapFilesOf(files.moving), files.moving_crs));
+}
+
+LoadedPair loadPair(const PairFiles& files, const FixedSource& fixed_source) {
   LoadedPair pair;
   const io::MapFiles fixed_files = io::mapFilesOf(files.fixed);
   const io::MapFiles moving_files = io::mapFilesOf(files.moving);
-  const io::FileCrs fixed = io::crsOfMap(fixed_files, files.fixed_crs);
-  const io::FileCrs moving = io::crsOfMap(moving_files, files.moving_crs);
-  pair.frame = io::commonFrame(fixed, moving);
+  pair.frame = frameOf(files);
   if (!moving_files.raster) pair.format = io::formatOf(moving_files.main);
   if (pair.format && io::isLas(*pair.format)) pair.aligned = *pair.format;
   if (files.aligned != "auto") pair.aligned = formatNamed("--aligned-format", files.aligned);
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
     if (i == 0) {
-      io::StreamOptions options;
-      options.read.map = pair.frame.fixed.get();
-      options.on_pass = on_pass;
-      options.crs = pair.frame.crs;
-      pair.fixed = io::streamMap(fixed_files, options);
+      pair.fixed = fixed_source(fixed_files, pair.frame);
     } else {
       pair.moving = io::readMap(moving_files, {true, pair.frame.moving.get()});
       pair.moving.crs = pair.frame.crs;
     }
   });
-  const CloudFacts& fixed_facts = pair.fixed->facts();
+  const CloudFacts& fixed_facts = pair.fixed->cloud.facts();
   io::checkGroundScale(fixed_facts.name, pair.frame.crs, fixed_facts.origin.head<2>());
   return pair;
 }

@@ -16,6 +16,8 @@
 #include "agricolmap/io/cloud/point_move.hpp"
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/raster/map_files.hpp"
+#include "agricolmap/pipeline/fixed_cloud.hpp"
 
 namespace agricolmap {
 
@@ -32,18 +34,34 @@ struct PairFiles {
   void check() const;
 };
 
-/// Both clouds in the coordinate system that they have in common, in metres. The fixed one passes
-/// by and is not kept.
+/// A fixed cloud, which passes by and is not kept.
+struct LoadedFixed {
+  explicit LoadedFixed(std::unique_ptr<PointStream> stream)
+      : points(std::move(stream)), cloud(*points) {}
+  std::unique_ptr<PointStream> points;
+  pipeline::FixedCloud cloud;
+};
+/// Gives the fixed cloud of these files in the frame.
+using FixedSource = std::function<std::shared_ptr<const LoadedFixed>(const io::MapFiles& files,
+                                                                     const io::CommonFrame& frame)>;
+/// As a stream for one registration, which the frame must outlive. `on_pass` hears of its points;
+/// see StreamOptions.
+std::shared_ptr<const LoadedFixed> streamedFixed(
+    const io::MapFiles& files, const io::CommonFrame& frame,
+    const std::function<void(std::size_t, std::size_t)>& on_pass = {});
+
+/// What both are brought into.
+io::CommonFrame frameOf(const PairFiles& files);
+
+/// Both clouds in the coordinate system that they have in common, in metres.
 struct LoadedPair {
   io::CommonFrame frame;
   std::optional<io::CloudFormat> format;            ///< of MOVING, unless it is a raster
   io::CloudFormat aligned = io::CloudFormat::kPly;  ///< of the aligned cloud
-  std::unique_ptr<PointStream> fixed;
+  std::shared_ptr<const LoadedFixed> fixed;
   Cloud moving;
 };
-/// `on_pass` hears of the points of the fixed cloud; see StreamOptions.
-LoadedPair loadPair(const PairFiles& files,
-                    const std::function<void(std::size_t, std::size_t)>& on_pass = {});
+LoadedPair loadPair(const PairFiles& files, const FixedSource& fixed);
 
 /// The format that is called `name` ("copc"). Throws UsageError, naming `flag`, where none is.
 io::CloudFormat formatNamed(const std::string& flag, const std::string& name);

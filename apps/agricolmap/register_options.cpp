@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "agricolmap/batch/settings.hpp"
 #include "agricolmap/config/text.hpp"
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/io/text/text.hpp"
@@ -54,9 +55,7 @@ void applyPriorSigma(const std::string& text, PriorUncertainty& prior, const Opt
   set("prior.scale", fmt::format("{:.17g}", *scale / 100.0));
 }
 
-/// Refuses flags that would do nothing. Of a file only what differs from the default, and from what
-/// --geometry-only makes of it: one with all options, as --dump-config writes it, is no request for
-/// each of them.
+/// Refuses flags that would do nothing, and what of a file would.
 void refuseIdle(const pipeline::RegistrationOptions& chosen, const std::vector<std::string>& flags,
                 const std::vector<std::string>& in_file) {
   for (const std::string& path : flags) {
@@ -65,20 +64,9 @@ void refuseIdle(const pipeline::RegistrationOptions& chosen, const std::vector<s
       throw UsageError(fmt::format("{} would do nothing: it needs {}", flagOf(path), missing));
     }
   }
-  pipeline::RegistrationOptions options = chosen;
-  pipeline::RegistrationOptions defaults;
-  defaults.geometry_only = chosen.geometry_only;
-  defaults = pipeline::resolved(defaults);
-  const OptionTable table = optionTable(options);
-  const OptionTable usual = optionTable(defaults);
-  for (const std::string& path : in_file) {
-    const std::string missing = pipeline::missingFor(chosen, path);
-    const std::string value = config::optionText(*table.find(path));
-    if (!missing.empty() && value != config::optionText(*usual.find(path))) {
-      throw UsageError(
-          fmt::format("option {} = {} in the options file would do nothing: it needs {}", path,
-                      value, missing));
-    }
+  const std::string idle = batch::idleOption(chosen, in_file);
+  if (!idle.empty()) {
+    throw UsageError(fmt::format("option {} (of the options file)", idle));
   }
 }
 

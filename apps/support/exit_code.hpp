@@ -15,6 +15,7 @@ enum class ExitCode : int {
   kOutput = 4,
   kRejected = 10,
   kAmbiguous = 11,
+  kSomeFailed = 12,  ///< of many registrations some ended without an answer
   kInterrupted = 130,
 };
 

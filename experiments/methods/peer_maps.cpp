@@ -46,10 +46,11 @@ PeerMaps makePeerMaps(const MethodInput& input, MethodTimes& times) {
   const pipeline::RegistrationOptions paper = pipeline::preset("paper");
   PeerMaps maps;
   const CloudStream stream(input.fixed);
+  const pipeline::FixedCloud fixed_cloud(stream);
   const Eigen::Affine3d guess =
-      pipeline::centredGuess(stream, input.moving, input.guess, input.prior);
+      pipeline::centredGuess(fixed_cloud, input.moving, input.guess, input.prior);
   times.run("level", [&] {
-    pipeline::levelFixed(stream, paper.level, maps.frames);
+    pipeline::levelFixed(fixed_cloud, paper.level, maps.frames);
     pipeline::levelMoving(stream.facts(), input.moving, guess, paper.level, maps.frames);
   });
   times.run("grid", [&] {

@@ -141,4 +141,15 @@ std::string suggestion(const OptionTable& table, std::string_view path) {
   return closest.empty() ? "" : fmt::format(" (did you mean '{}'?)", closest);
 }
 
+std::string suggestion(const std::vector<std::string>& known, std::string_view word) {
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::string closest;
+  for (const std::string& one : known) {
+    const std::size_t distance = editDistance(word, one);
+    if (distance < least) closest = one;
+    least = std::min(least, distance);
+  }
+  return closest.empty() ? "" : fmt::format(" (did you mean '{}'?)", closest);
+}
+
 }  // namespace agricolmap::config

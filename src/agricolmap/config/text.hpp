@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "agricolmap/core/options.hpp"
 
@@ -27,5 +28,7 @@ std::string closestPath(const OptionTable& table, std::string_view path);
 
 /// ` (did you mean 'grid.cell'?)` or, when none is near, nothing.
 std::string suggestion(const OptionTable& table, std::string_view path);
+/// The same of a word among known ones.
+std::string suggestion(const std::vector<std::string>& known, std::string_view word);
 
 }  // namespace agricolmap::config

@@ -10,9 +10,11 @@
 #include <map>
 #include <sstream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/config/text.hpp"
+#include "agricolmap/config/yaml_options.hpp"
 #include "agricolmap/core/error.hpp"
 
 namespace agricolmap::config {
@@ -39,7 +41,7 @@ class DocumentStarts : public YAML::EventHandler {
 
 /// YAML::LoadAll would go on for ever, and fill the memory, where a document begins with ',': the
 /// parser finds an empty one there again and again.
-void requireOneDocument(const std::string& text, const std::string& name) {
+void requireOneDocument(const std::string& text, const std::string& name, const std::string& what) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
   DocumentStarts starts;
@@ -48,53 +50,47 @@ void requireOneDocument(const std::string& text, const std::string& name) {
   const YAML::Mark& second = starts.marks[1];
   if (second.pos == starts.marks[0].pos) {
     throw UsageError(
-        fmt::format("{}:{}: not valid YAML: no option begins so", name, second.line + 1));
+        fmt::format("{}:{}: not valid YAML: no entry begins so", name, second.line + 1));
   }
   throw UsageError(
-      fmt::format("{}:{}: a second document ('---') in an options file; put all options into one",
-                  name, second.line + 1));
+      fmt::format("{}:{}: a second document ('---') in {}", name, second.line + 1, what));
 }
 
-int lineOf(const YAML::Node& node) { return node.Mark().line + 1; }
-
-/// Checks a document against a table, then sets everything at once.
-class Loader {
+/// Looks at a document of options from the outside in.
+class OptionsReader {
  public:
-  Loader(const std::string& name, const OptionTable& table) : name_(name), table_(table) {}
+  OptionsReader(const OptionTable& table, const OnProblem& on_problem)
+      : table_(table), on_problem_(on_problem) {}
 
-  void read(const YAML::Node& root) {
-    if (root.IsNull()) return;
-    if (!root.IsMap())
-      fail(lineOf(root), "expected a map of options, such as 'grid: {cell: 0.02}'");
-    readMap(root, "");
-  }
-  /// Sets what was read; returns its paths.
-  std::vector<std::string> apply() const {
-    for (const std::function<void()>& setter : setters_) setter();
-    std::vector<std::string> paths;
-    for (const auto& [path, line] : lines_) paths.push_back(path);
-    return paths;
+  OptionTexts read(const YAML::Node& root) && {
+    if (root.IsNull()) return {};
+    if (root.IsMap()) {
+      readMap(root, "");
+    } else {
+      on_problem_(lineOf(root), "expected a map of options, such as 'grid: {cell: 0.02}'");
+    }
+    return std::move(texts_);
   }
 
  private:
-  [[noreturn]] void fail(int line, const std::string& message) const {
-    throw UsageError(fmt::format("{}:{}: {}", name_, line, message));
-  }
-
   // The depth is that of the table, since a map must be a group of it: aliases cannot loop.
   void readMap(const YAML::Node& map, const std::string& prefix) {  // NOLINT(misc-no-recursion)
     for (const auto& entry : map) {
       const int line = lineOf(entry.first);
-      if (!entry.first.IsScalar()) fail(line, "the name of an option must be plain text");
+      if (!entry.first.IsScalar()) {
+        on_problem_(line, "the name of an option must be plain text");
+        continue;
+      }
       const std::string path = prefix + entry.first.Scalar();
       if (const OptionField* field = table_.find(path)) {
         readValue(*field, entry.second, line);
       } else if (!isGroup(path)) {
-        fail(line, fmt::format("unknown option '{}'{}", path, suggestion(table_, path)));
+        on_problem_(line, fmt::format("unknown option '{}'{}", path, suggestion(table_, path)));
       } else if (entry.second.IsMap()) {
         readMap(entry.second, path + ".");
       } else if (!entry.second.IsNull()) {
-        fail(line, fmt::format("'{}' is a group of options and needs a map, not a value", path));
+        on_problem_(line,
+                    fmt::format("'{}' is a group of options and needs a map, not a value", path));
       }
     }
   }
@@ -102,15 +98,18 @@ class Loader {
   void readValue(const OptionField& field, const YAML::Node& value, int line) {
     const auto [first, is_new] = lines_.try_emplace(field.path, line);
     if (!is_new) {
-      fail(line, fmt::format("option {} was given in line {} already", field.path, first->second));
-    }
-    if (!value.IsScalar()) {
-      fail(line, fmt::format("option {} needs one value: {}", field.path, limitsText(field)));
-    }
-    try {
-      setters_.push_back(parseOption(field, value.Scalar()));
-    } catch (const UsageError& error) {
-      fail(line, error.what());
+      on_problem_(line,
+                  fmt::format("option {} was given in line {} already", field.path, first->second));
+    } else if (!value.IsScalar()) {
+      on_problem_(line,
+                  fmt::format("option {} needs one value: {}", field.path, limitsText(field)));
+    } else {
+      try {
+        parseOption(field, value.Scalar());
+        texts_[field.path] = value.Scalar();
+      } catch (const UsageError& error) {
+        on_problem_(line, error.what());
+      }
     }
   }
 
@@ -120,9 +119,9 @@ class Loader {
         [&](const OptionField& field) { return field.path.starts_with(path + "."); });
   }
 
-  const std::string& name_;
   const OptionTable& table_;
-  std::vector<std::function<void()>> setters_;
+  const OnProblem& on_problem_;
+  OptionTexts texts_;
   std::map<std::string, int> lines_;
 };
 
@@ -156,17 +155,43 @@ std::vector<std::string> loadYaml(const std::filesystem::path& file, OptionTable
   return loadYamlText(text.str(), file.string(), table);
 }
 
-std::vector<std::string> loadYamlText(const std::string& text, const std::string& name,
-                                      OptionTable& table) {
-  Loader loader(name, table);
+int lineOf(const YAML::Node& node) { return node.Mark().line + 1; }
+
+YAML::Node parseYaml(const std::string& text, const std::string& name, const std::string& what) {
   try {
-    requireOneDocument(text, name);
-    loader.read(YAML::Load(text));
+    requireOneDocument(text, name, what);
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw UsageError(
         fmt::format("{}:{}: not valid YAML: {}", name, error.mark.line + 1, error.msg));
   }
-  return loader.apply();
+}
+
+OptionTexts readOptions(const YAML::Node& map, const OptionTable& table,
+                        const OnProblem& on_problem) {
+  return OptionsReader(table, on_problem).read(map);
+}
+
+void applyOptions(const OptionTexts& texts, const OptionTable& table) {
+  std::vector<std::function<void()>> setters;
+  for (const auto& [path, text] : texts) {
+    const OptionField* const field = table.find(path);
+    if (field == nullptr) throw UsageError(fmt::format("unknown option '{}'", path));
+    setters.push_back(parseOption(*field, text));
+  }
+  for (const std::function<void()>& set : setters) set();
+}
+
+std::vector<std::string> loadYamlText(const std::string& text, const std::string& name,
+                                      OptionTable& table) {
+  const YAML::Node root = parseYaml(text, name, "an options file; put all options into one");
+  const OptionTexts texts = readOptions(root, table, [&](int line, const std::string& problem) {
+    throw UsageError(fmt::format("{}:{}: {}", name, line, problem));
+  });
+  applyOptions(texts, table);
+  std::vector<std::string> paths;
+  for (const auto& [path, value] : texts) paths.push_back(path);
+  return paths;
 }
 
 std::string dumpYaml(const OptionTable& table) {

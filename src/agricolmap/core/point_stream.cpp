@@ -17,6 +17,11 @@ CloudFacts factsOf(const Cloud& cloud) {
   return facts;
 }
 
+void PointStream::passNear(const Eigen::Affine3d& /*frame_from_local*/,
+                           const Eigen::AlignedBox2d& /*window*/, const Visit& visit) const {
+  pass(visit);
+}
+
 void CloudStream::pass(const Visit& visit) const {
   const std::span<const Eigen::Vector3f> xyz(cloud_.xyz);
   const std::span<const Rgb> rgb(cloud_.rgb);

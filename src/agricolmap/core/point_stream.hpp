@@ -2,6 +2,7 @@
 // them needs no memory for all. A Cloud is one such stream, a file another (io/cloud/cloud_stream).
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -29,7 +30,7 @@ CloudFacts factsOf(const Cloud& cloud);
 struct PointBatch {
   std::span<const Eigen::Vector3f> xyz;  ///< local coordinates [m]
   std::span<const Rgb> rgb;              ///< as many, or none where the cloud has no colours
-  std::size_t first = 0;                 ///< index of the first one in the cloud
+  std::size_t first = 0;  ///< index of the first one in the cloud; of a part of one, nothing
 
   std::size_t size() const { return xyz.size(); }
 };
@@ -48,6 +49,10 @@ class PointStream {
   /// Hands all points to `visit`, in order and from the thread that calls this; the same batches
   /// each time. Throws InputError when they can no longer be read, and what `visit` throws.
   virtual void pass(const Visit& visit) const = 0;
+  /// The same with those points alone, in their order, that `frame_from_local` brings into `window`
+  /// (x and y), and maybe others: all of them, where a stream cannot tell sooner which these are.
+  virtual void passNear(const Eigen::Affine3d& frame_from_local, const Eigen::AlignedBox2d& window,
+                        const Visit& visit) const;
 };
 
 /// The points of a cloud, which must outlive it.

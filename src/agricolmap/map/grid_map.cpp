@@ -276,7 +276,7 @@ class Gridder {
 GridMap makeGridMap(const PointStream& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options) {
   Gridder gridder(frameFor(window, options.cell), levelled_from_local, options);
-  cloud.pass([&](const PointBatch& batch) { gridder.add(batch); });
+  cloud.passNear(levelled_from_local, window, [&](const PointBatch& batch) { gridder.add(batch); });
   GridMap map = std::move(gridder).finish();
   if (map.points == 0) {
     throw InputError(

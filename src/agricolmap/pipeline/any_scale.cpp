@@ -9,7 +9,7 @@
 
 namespace agricolmap::pipeline {
 
-std::pair<Outcome, double> placeAtAnyScale(const PointStream& fixed, const Cloud& moving,
+std::pair<Outcome, double> placeAtAnyScale(const FixedCloud& fixed, const Cloud& moving,
                                            const Eigen::Affine3d& guess,
                                            const RegistrationOptions& options,
                                            const Locator& locator, Monitor& monitor,

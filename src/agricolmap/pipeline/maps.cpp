@@ -40,7 +40,7 @@ void gridMoving(const Cloud& moving, PairMaps& maps) {
 
 }  // namespace
 
-PairMaps mapPair(const PointStream& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+PairMaps mapPair(const FixedCloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const RegistrationOptions& options, Monitor& monitor) {
   PairMaps maps;
   monitor.run(Stage::kLevel, [&] {
@@ -58,7 +58,7 @@ PairMaps mapPair(const PointStream& fixed, const Cloud& moving, const Eigen::Aff
   }
   monitor.run(Stage::kGrid, [&] {
     maps.grid = cellsFor(maps.frames, options);
-    gridFixed(fixed, options, maps);
+    gridFixed(fixed.points(), options, maps);
     if (!options.prior.scale_unknown) gridMoving(moving, maps);
   });
   return maps;

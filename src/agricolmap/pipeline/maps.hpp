@@ -22,7 +22,7 @@ struct PairMaps {
 /// Both clouds levelled under the guess (Sec. II, assumption 5) and drawn as multimodal grid maps
 /// (Sec. III-A), the fixed one as far as the moving one can reach. At an unknown scale the whole
 /// fixed map, and no moving one: see `mapMoving`. Throws InputError for clouds that cannot be used.
-PairMaps mapPair(const PointStream& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
+PairMaps mapPair(const FixedCloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
                  const RegistrationOptions& options, Monitor& monitor);
 
 /// Levels and grids the moving cloud again, under another guess; the fixed map stays.

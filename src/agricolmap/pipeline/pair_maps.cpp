@@ -62,10 +62,10 @@ Eigen::Vector3d meanOf(const PointStream& cloud) {
 
 Eigen::Vector3d meanOf(const Cloud& cloud) { return meanOf(CloudStream(cloud)); }
 
-Eigen::Affine3d centredGuess(const PointStream& fixed, const Cloud& moving,
+Eigen::Affine3d centredGuess(const FixedCloud& fixed, const Cloud& moving,
                              const Eigen::Affine3d& guess, const PriorUncertainty& uncertainty) {
   if (!uncertainty.anywhere()) return guess;
-  return Eigen::Translation3d(meanOf(fixed) - guess * meanOf(moving)) * guess;
+  return Eigen::Translation3d(fixed.mean() - guess * meanOf(moving)) * guess;
 }
 
 double turnAlong(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,
@@ -93,10 +93,13 @@ double turnAlong(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affi
   return -std::atan(along.y() / along.x());
 }
 
-void levelFixed(const PointStream& fixed, const map::LevelOptions& options, PairFrames& frames) {
-  frames.fixed = map::levelCloud(fixed, Eigen::Affine3d::Identity(), options);
+void levelFixed(const FixedCloud& fixed, const map::LevelOptions& options, PairFrames& frames) {
+  frames.fixed = fixed.levelling(options);
   frames.levelled_from_fixed = turned(frames.turn) * frames.fixed.levelled_from_guess;
-  frames.fixed_footprint = map::footprintOf(fixed, frames.levelled_from_fixed);
+  // What is turned is so for one strip.
+  frames.fixed_footprint = frames.turn == 0.0
+                               ? fixed.footprint(options)
+                               : map::footprintOf(fixed.points(), frames.levelled_from_fixed);
 }
 
 void levelMoving(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,

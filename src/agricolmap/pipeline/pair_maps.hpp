@@ -8,6 +8,7 @@
 #include "agricolmap/map/footprint.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/map/level.hpp"
+#include "agricolmap/pipeline/fixed_cloud.hpp"
 
 namespace agricolmap::pipeline {
 
@@ -30,7 +31,7 @@ Eigen::Vector3d meanOf(const Cloud& cloud);
 
 /// Where the guess says nothing about the place, the middles of the clouds are laid together, so
 /// that all that follows counts from there, however far apart the files' coordinates are.
-Eigen::Affine3d centredGuess(const PointStream& fixed, const Cloud& moving,
+Eigen::Affine3d centredGuess(const FixedCloud& fixed, const Cloud& moving,
                              const Eigen::Affine3d& guess, const PriorUncertainty& uncertainty);
 
 /// The turn that lays a strip of more than `from` [m] along the x axis under the guess; none where
@@ -39,7 +40,7 @@ double turnAlong(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affi
                  const PriorUncertainty& uncertainty, double from);
 
 /// Levels the fixed cloud and finds where its points are.
-void levelFixed(const PointStream& fixed, const map::LevelOptions& options, PairFrames& frames);
+void levelFixed(const FixedCloud& fixed, const map::LevelOptions& options, PairFrames& frames);
 /// Levels the moving cloud under a guess (moving file → fixed file coordinates) and finds where its
 /// points are.
 void levelMoving(const CloudFacts& fixed, const Cloud& moving, const Eigen::Affine3d& guess,

@@ -73,7 +73,7 @@ Outcome place(const PairMaps& maps, const correlation::MapSignals& fixed, std::s
   return best;
 }
 
-Registration registerClouds(const PointStream& fixed, const Cloud& moving,
+Registration registerClouds(const FixedCloud& fixed, const Cloud& moving,
                             const Eigen::Affine3d& guess, const RegistrationOptions& chosen,
                             Monitor& monitor, const Locator& locator,
                             const std::vector<Eigen::Vector3d>& path) {
@@ -92,6 +92,13 @@ Registration registerClouds(const PointStream& fixed, const Cloud& moving,
   return monitor.run(Stage::kCompose, [&] {
     return compose(fixed.facts(), moving, std::move(maps), std::move(outcome), scale, options);
   });
+}
+
+Registration registerClouds(const PointStream& fixed, const Cloud& moving,
+                            const Eigen::Affine3d& guess, const RegistrationOptions& options,
+                            Monitor& monitor, const Locator& locator,
+                            const std::vector<Eigen::Vector3d>& path) {
+  return registerClouds(FixedCloud(fixed), moving, guess, options, monitor, locator, path);
 }
 
 Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Eigen::Affine3d& guess,

@@ -68,12 +68,17 @@ struct Registration {
   bool bent() const { return placed && placed->followed; }
 };
 
-/// Registers `moving` into `fixed`, which passes by four times or more. `guess`: moving file
-/// coordinates → fixed file coordinates. Throws InputError for clouds that cannot be used,
-/// UsageError for options outside their limits, Interrupted when the monitor's token asks to stop.
-/// A registration that fails is a rejected result, not an exception. `locator` stands in for the
-/// search that the options name; empty: theirs. `path`: places of the robot in the order of
-/// driving, moving file coordinates; empty: as the strip's shape tells.
+/// Registers `moving` into `fixed`, which passes by four times or more, less often where other
+/// strips were registered to the same FixedCloud before. `guess`: moving file coordinates → fixed
+/// file coordinates. Throws InputError for clouds that cannot be used, UsageError for options
+/// outside their limits, Interrupted when the monitor's token asks to stop. A registration that
+/// fails is a rejected result, not an exception. `locator` stands in for the search that the
+/// options name; empty: theirs. `path`: places of the robot in the order of driving, moving file
+/// coordinates; empty: as the strip's shape tells.
+Registration registerClouds(const FixedCloud& fixed, const Cloud& moving,
+                            const Eigen::Affine3d& guess, const RegistrationOptions& options,
+                            Monitor& monitor, const Locator& locator = {},
+                            const std::vector<Eigen::Vector3d>& path = {});
 Registration registerClouds(const PointStream& fixed, const Cloud& moving,
                             const Eigen::Affine3d& guess, const RegistrationOptions& options,
                             Monitor& monitor, const Locator& locator = {},

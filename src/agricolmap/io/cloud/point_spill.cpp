@@ -2,17 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-
 namespace agricolmap::io {
 namespace {
 
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
-
-std::string temporaryFolder() {
-  const char* const named = std::getenv("TMPDIR");
-  return named == nullptr || *named == '\0' ? "/var/tmp" : named;
-}
 
 std::size_t bytesOf(std::size_t points, bool coloured) {
   return points * (sizeof(Eigen::Vector3f) + (coloured ? sizeof(Rgb) : 0));
@@ -22,9 +15,9 @@ std::size_t bytesOf(std::size_t points, bool coloured) {
 
 PointSpill::PointSpill(std::size_t points, bool coloured, const std::string& source)
     : points_(points),
-      file_(temporaryFolder(),
+      file_(scratchFolder(),
             fmt::format("{}: its decoded points need {:.1f} GiB for a while in {}", source,
-                        static_cast<double>(bytesOf(points, coloured)) / kGiB, temporaryFolder()),
+                        static_cast<double>(bytesOf(points, coloured)) / kGiB, scratchFolder()),
             "name another folder in TMPDIR, or convert the file to LAS, which needs no room") {
   file_.reserve(bytesOf(points, coloured));
 }

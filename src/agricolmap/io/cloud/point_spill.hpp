@@ -11,9 +11,8 @@
 
 namespace agricolmap::io {
 
-/// Points by their number, 12 bytes each and 3 more for colours, in the folder that TMPDIR names,
-/// else in /var/tmp (/tmp may be memory). Everything throws OutputError. Can be written and read
-/// from several threads at once.
+/// Points by their number, 12 bytes each and 3 more for colours, in the scratch folder.
+/// Everything throws OutputError. Can be written and read from several threads at once.
 class PointSpill {
  public:
   /// Room for `points` of `source`, a name for messages.

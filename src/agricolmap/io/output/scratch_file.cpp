@@ -40,6 +40,11 @@ int moveBytes(int fd, std::span<Byte> bytes, std::uint64_t offset, const Move& m
 
 }  // namespace
 
+std::string scratchFolder() {
+  const char* const named = std::getenv("TMPDIR");
+  return named == nullptr || *named == '\0' ? "/var/tmp" : named;
+}
+
 ScratchFile::ScratchFile(const std::filesystem::path& folder, std::string purpose,
                          std::string remedy)
     : purpose_(std::move(purpose)),

@@ -9,6 +9,9 @@
 
 namespace agricolmap::io {
 
+/// The folder that TMPDIR names, else /var/tmp: /tmp may be memory.
+std::string scratchFolder();
+
 /// A file without a name: gone with this, however the program ends. Everything throws OutputError
 /// with the system's reason. Can be written and read from several threads at once.
 class ScratchFile {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <set>
 #include <system_error>
@@ -107,8 +108,18 @@ fs::path checkedName(const std::string& name) {
 
 }  // namespace
 
-StagedOutput::StagedOutput(const fs::path& dir, bool overwrite)
-    : asked_(dir), target_(resolve(dir)) {
+std::string targetOfHidden(const std::string& name) {
+  constexpr std::string_view kMark = ".partial-";
+  const std::size_t mark = name.rfind(kMark);
+  if (!name.starts_with('.') || mark == std::string::npos || mark == 0) return {};
+  const std::string number = name.substr(mark + kMark.size());
+  const bool made_so =
+      !number.empty() && number.find_first_not_of("0123456789-") == std::string::npos;
+  return made_so ? name.substr(1, mark - 1) : "";
+}
+
+StagedOutput::StagedOutput(const fs::path& dir, Existing existing)
+    : asked_(dir), target_(resolve(dir)), existing_(existing) {
   std::error_code error;
   const fs::file_status status = fs::status(target_, error);
   target_existed_ = fs::exists(status);
@@ -116,14 +127,15 @@ StagedOutput::StagedOutput(const fs::path& dir, bool overwrite)
     throw OutputError(
         fmt::format("{}: is a file, not a folder to write results into", dir.string()));
   }
-  if (target_existed_ && !overwrite && !isEmptyButForHidden(target_)) {
+  if (target_existed_ && existing == Existing::kRefuse && !isEmptyButForHidden(target_)) {
     throw OutputError(
         fmt::format("{}: the output folder is not empty; name another one, or let what is there be "
                     "replaced",
                     dir.string()),
         Remedy::kOverwrite);
   }
-  const fs::path home = target_existed_ ? target_ : target_.parent_path();
+  const bool inside = target_existed_ && existing != Existing::kReplace;
+  const fs::path home = inside ? target_ : target_.parent_path();
   made_parents_ = makeParents(home);
   try {
     staging_ =
@@ -181,32 +193,50 @@ void StagedOutput::rollBack() noexcept {
   moves_.clear();
 }
 
+void StagedOutput::mergeInto(const fs::path& fresh, const std::vector<std::string>& stale_names) {
+  std::error_code error;
+  std::set<fs::path> names;
+  for (const auto& entry : fs::recursive_directory_iterator(fresh)) {
+    if (!entry.is_directory()) names.insert(entry.path().lexically_relative(fresh));
+  }
+  try {
+    for (const fs::path& name : names) {
+      moveAside(name);
+      fs::create_directories((target_ / name).parent_path(), error);
+      if (error) fail((target_ / name).parent_path(), "the folder cannot be made", error);
+      renameOrFail(fresh / name, target_ / name);
+      moves_.push_back({fresh / name, target_ / name});
+    }
+    for (const std::string& stale : stale_names) {
+      if (const fs::path name = checkedName(stale); !names.contains(name)) moveAside(name);
+    }
+  } catch (...) {
+    rollBack();
+    throw;
+  }
+}
+
+void StagedOutput::replaceBy(const fs::path& fresh) {
+  if (::renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) return;
+  if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be put in place", lastError());
+  const fs::path old = staging_ / "old";
+  renameOrFail(target_, old);
+  if (::rename(fresh.c_str(), target_.c_str()) == 0) return;
+  const std::error_code reason = lastError();
+  ::rename(old.c_str(), target_.c_str());
+  fail(target_, "cannot be put in place", reason);
+}
+
 void StagedOutput::commit(const std::vector<std::string>& stale_names) {
   const fs::path fresh = folder().file();
-  std::error_code error;
   if (!target_existed_) {
     renameOrFail(fresh, target_);
+  } else if (existing_ == Existing::kReplace) {
+    replaceBy(fresh);
   } else {
-    std::set<fs::path> names;
-    for (const auto& entry : fs::recursive_directory_iterator(fresh)) {
-      if (!entry.is_directory()) names.insert(entry.path().lexically_relative(fresh));
-    }
-    try {
-      for (const fs::path& name : names) {
-        moveAside(name);
-        fs::create_directories((target_ / name).parent_path(), error);
-        if (error) fail((target_ / name).parent_path(), "the folder cannot be made", error);
-        renameOrFail(fresh / name, target_ / name);
-        moves_.push_back({fresh / name, target_ / name});
-      }
-      for (const std::string& stale : stale_names) {
-        if (const fs::path name = checkedName(stale); !names.contains(name)) moveAside(name);
-      }
-    } catch (...) {
-      rollBack();
-      throw;
-    }
+    mergeInto(fresh, stale_names);
   }
+  std::error_code error;
   fs::remove_all(staging_, error);
   staging_.clear();
   made_parents_.clear();

@@ -151,6 +151,36 @@ TEST(StagedOutput, FollowsLinks) {
   EXPECT_EQ(contentOf(dir / "real/a"), "1");
 }
 
+TEST(StagedOutput, ReplacesAllOfAFolderOnRequest) {
+  const TempDir dir;
+  fs::create_directory(dir / "out");
+  dir.write("out/a", "old");
+  dir.write("out/b", "old");
+  {
+    StagedOutput output(dir / "out", Existing::kReplace);
+    writeText(output.path("a"), "new");
+    EXPECT_EQ(namesIn(dir / "out"), (Names{"a", "b"}));
+  }
+  EXPECT_EQ(contentOf(dir / "out/a"), "old");
+  StagedOutput output(dir / "out", Existing::kReplace);
+  writeText(output.path("a"), "new");
+  output.commit();
+  EXPECT_EQ(namesIn(dir / "out"), Names{"a"});
+  EXPECT_EQ(contentOf(dir / "out/a"), "new");
+  EXPECT_EQ(namesIn(dir.path()), Names{"out"});
+}
+
+TEST(StagedOutput, KnowsWhatAKilledRunHasLeft) {
+  const TempDir dir;
+  const StagedOutput output(dir / "row.1", false);
+  const Names names = namesIn(dir.path());
+  ASSERT_EQ(names.size(), 1U);
+  EXPECT_EQ(targetOfHidden(*names.begin()), "row.1");
+  for (const char* other : {"row.1", ".row", ".partial-1", ".row.partial-", ".row.partial-x", ""}) {
+    EXPECT_EQ(targetOfHidden(other), "") << other;
+  }
+}
+
 TEST(StagedFile, AppearsWholeOnCommit) {
   const TempDir dir;
   {

@@ -1,4 +1,4 @@
-// The outline of a set of points, and the smallest rectangle around it.
+// The smallest rectangle around an outline.
 #pragma once
 
 #include <vector>
@@ -6,10 +6,6 @@
 #include "agricolmap/report/draw/view.hpp"
 
 namespace agricolmap::report {
-
-/// Corners of the convex hull, anticlockwise (Andrew's monotone chain). Fewer than three points
-/// come back as they are.
-std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points);
 
 /// The rectangle of least area around a hull, its first axis along the longer side and pointing
 /// east. Strips lie along it whatever their direction.

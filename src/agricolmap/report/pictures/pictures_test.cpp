@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "agricolmap/core/convex_hull.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/deform/deform.hpp"

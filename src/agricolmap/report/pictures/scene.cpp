@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "agricolmap/core/angles.hpp"
+#include "agricolmap/core/convex_hull.hpp"
 #include "agricolmap/map/vegetation.hpp"
 #include "agricolmap/report/counts.hpp"
 #include "agricolmap/report/draw/outline.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agricolmap/core/convex_hull.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/robust.hpp"
 #include "agricolmap/report/draw/outline.hpp"
@@ -139,7 +140,7 @@ void CloudPhoto::survey() {
     }
   }
   spacing_ = frame.cell * std::sqrt(static_cast<double>(covered.size()) / points);
-  outline_ = report::convexHull(std::move(covered));
+  outline_ = convexHull(std::move(covered));
 }
 
 Raster<std::uint32_t> CloudPhoto::shoot(const report::View& view) const {
