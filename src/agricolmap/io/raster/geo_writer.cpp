@@ -108,7 +108,9 @@ class LayerInMemory {
       GDALRasterBand& added = add(first, sizeof(T), kTypeOf<T>, layer);
       added.SetDescription(band.name.c_str());
       if (!band.unit.empty()) added.SetUnitType(band.unit.c_str());
-      added.SetColorInterpretation(GCI_GrayIndex);
+      // Only one band of a GeoTIFF can be called grey; of others GDAL would say so in a file
+      // beside.
+      added.SetColorInterpretation(added.GetBand() == 1 ? GCI_GrayIndex : GCI_Undefined);
     }
   }
 
@@ -188,6 +190,29 @@ CPLStringList optionsOf(const GeoLayer& layer) {
   return options;
 }
 
+/// Keeps GDAL quiet in this thread and holds the first thing that failed, which says why: what
+/// follows from it is heard later.
+class FirstFailure {
+ public:
+  FirstFailure() { CPLPushErrorHandlerEx(take, this); }
+  ~FirstFailure() { CPLPopErrorHandler(); }
+  FirstFailure(const FirstFailure&) = delete;
+  FirstFailure& operator=(const FirstFailure&) = delete;
+
+  bool happened() const { return happened_; }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  static void CPL_STDCALL take(CPLErr kind, CPLErrorNum /*number*/, const char* message) {
+    auto& self = *static_cast<FirstFailure*>(CPLGetErrorHandlerUserData());
+    if (kind < CE_Failure || self.happened_) return;
+    self.happened_ = true;
+    self.reason_ = message;
+  }
+  bool happened_ = false;
+  std::string reason_;
+};
+
 /// For GDAL, which asks it now and then whether to go on.
 int goOn(double /*done*/, const char* /*message*/, void* /*data*/) {
   try {
@@ -202,18 +227,15 @@ int goOn(double /*done*/, const char* /*message*/, void* /*data*/) {
 
 void writeLayer(const OutputPath& path, const GeoLayer& layer) {
   checkLayer(path, layer);
-  const QuietGdal quiet;
+  const FirstFailure failure;
   LayerInMemory source(path, layer);
-  GDALDriver& driver = driverOf("COG");
-  CPLErrorReset();
-  GDALDatasetUniquePtr written(driver.CreateCopy(path.file().c_str(), &source.dataset(), FALSE,
-                                                 optionsOf(layer).List(), goOn, nullptr));
-  bool whole = written != nullptr;
+  GDALDatasetUniquePtr written(driverOf("COG").CreateCopy(
+      path.file().c_str(), &source.dataset(), FALSE, optionsOf(layer).List(), goOn, nullptr));
+  const bool made = written != nullptr;
   // Some of a file is written, and of a full disk is heard, on closing only.
   written.reset();
-  whole = whole && CPLGetLastErrorType() < CE_Failure;
-  if (whole) return;
-  const std::string reason = CPLGetLastErrorMsg();
+  if (made && !failure.happened()) return;
+  const std::string& reason = failure.reason();
   std::error_code ignored;
   std::filesystem::remove(path.file(), ignored);
   throwIfInterrupted();
