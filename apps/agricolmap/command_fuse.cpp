@@ -12,6 +12,7 @@
 #include "agricolmap/fuse/cloud_file.hpp"
 #include "agricolmap/fuse/layer_files.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/report/pictures/shared_map_picture.hpp"
 #include "common.hpp"
 #include "fuse_sources.hpp"
 #include "option_flags.hpp"
@@ -26,6 +27,7 @@ struct FuseArguments {
   std::string config;
   std::string cloud = "auto";
   bool dump_config = false;
+  bool no_pictures = false;
   OptionFlags flags;
 };
 
@@ -101,12 +103,14 @@ void printSummary(const fuse::SharedMap& map, const report::MapFacts& facts,
       map.layers.frame.cell / map.lattice.factor);
   for (std::size_t i = 0; i < map.strips.size(); ++i) {
     const fuse::FusedStrip& strip = map.strips[i];
-    fmt::print("  {}: {:.1f} of {:.1f} m2 that it saw, {} points{}{}\n", strip.id, strip.owned_area,
-               strip.seen_area, facts.strips[i].kept,
-               strip.moved.isZero() ? ""
-                                    : fmt::format(", moved by {:.1f} cm to fit the others",
-                                                  100.0 * strip.moved.norm()),
-               facts.strips[i].heights_limited ? ", its heights are limited" : "");
+    std::string more;
+    if (!facts.cloud.empty()) more += fmt::format(", {} points", facts.strips[i].kept);
+    if (!strip.moved.isZero()) {
+      more += fmt::format(", moved by {:.1f} cm to fit the others", 100.0 * strip.moved.norm());
+    }
+    if (facts.strips[i].heights_limited) more += ", its heights are limited";
+    fmt::print("  {}: has {:.1f} of the {:.1f} m2 that it saw{}\n", strip.id, strip.owned_area,
+               strip.seen_area, more);
   }
   if (map.bias && !map.bias->curves[1].empty()) {
     const fuse::HeightCurve& plants = map.bias->curves[1];
@@ -126,6 +130,7 @@ ExitCode runFuse(const FuseArguments& arguments, const Globals& globals) {
     return ExitCode::kOk;
   }
   const std::optional<io::CloudFormat> format = cloudFormat(arguments.cloud);
+  requirePictures(arguments.no_pictures);
   // First of all, as nobody else may change the map meanwhile.
   io::SwappedFolder folder(arguments.output);
   MapPlan plan = planMap(arguments.files, folder.directory(), globals.overwrite);
@@ -141,6 +146,10 @@ ExitCode runFuse(const FuseArguments& arguments, const Globals& globals) {
   report::MapFacts facts = writeMap(folder, plan, clouds, map, inputs, format, options, progress);
   facts.command_line = globals.command_line;
   facts.version = AGRICOLMAP_VERSION;
+  if (!arguments.no_pictures) {
+    progress.step("picture");
+    report::writeSharedMapPicture(folder.path("map.png"), map, arguments.output);
+  }
   io::writeText(folder.path("map.json"), report::sharedMapJson(map, facts, options));
   throwIfInterrupted();
   folder.keepOthers(isForeign);
@@ -165,6 +174,7 @@ CommandSlot addFuseCommand(CLI::App& app, const Globals& globals) {
   command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");
+  command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG picture");
   fuse::FuseOptions defaults;
   arguments->flags.addTo(*command, optionTable(defaults), "Options of the map");
   return {command, [arguments, &globals] { return runFuse(*arguments, globals); }};

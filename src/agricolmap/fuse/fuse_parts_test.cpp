@@ -48,6 +48,23 @@ TEST(SurfaceMap, ShowsWhatLiesOnTop) {
   EXPECT_FALSE(coarse.valid(0, 1));
 }
 
+TEST(SurfaceMap, OnlyGapsOfACellAreFilled) {
+  Cloud cloud = groundCloud({0.0, 0.0}, {1.0, 1.0}, 0.1, [](double x, double) { return x; });
+  // A cell alone, and a block of three by three.
+  std::erase_if(cloud.xyz, [](const Eigen::Vector3f& p) {
+    const bool alone = std::abs(p.x() - 0.15F) < 0.01F && std::abs(p.y() - 0.15F) < 0.01F;
+    return alone || (std::abs(p.x() - 0.65F) < 0.11F && std::abs(p.y() - 0.65F) < 0.11F);
+  });
+  cloud.rgb.resize(cloud.size());
+  map::GridMap map = surfaceMap(CloudStream(cloud), Eigen::Vector3d::Zero(),
+                                {Eigen::Vector2d::Zero(), 0.1, 10, 10});
+  ASSERT_FALSE(map.valid(1, 1));
+  fillBetween(map);
+  EXPECT_NEAR(map.height(1, 1), 0.15, 0.01);
+  EXPECT_FLOAT_EQ(map.weight(1, 1), kBetween);
+  EXPECT_FALSE(map.valid(6, 6));
+}
+
 TEST(StripCells, SeesWhereItHasPointsAndNotBehindPlants) {
   // A strip of 4 m x 2 m with a hole of 0.3 m, and a single point far aside.
   Cloud cloud = groundCloud({2.0, 2.0}, {6.0, 4.0}, 0.01, [](double, double) { return 0.0; });

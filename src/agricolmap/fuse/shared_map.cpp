@@ -152,7 +152,7 @@ void takeFixed(const FixedHeights& fixed, std::int32_t date, const SharedMap& ma
         layers.surface[i] = fixed.map.height[i] + map.correction[i];
         layers.exg[i] = fixed.map.exg[i];
         layers.cover[i] = fixed.cover[i];
-        layers.density[i] = fixed.map.weight[i] * per_area;
+        layers.density[i] = std::floor(fixed.map.weight[i]) * per_area;
         layers.colour[i] = fixed.map.colour[i];
         layers.date[i] = date;
         layers.plane_error[i] = 0.0F;
@@ -214,7 +214,8 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
   map.lattice = latticeOf(fixed, inputs, options, map.warnings);
 
   step("fixed cloud");
-  const map::GridMap drone = surfaceMap(fixed, Eigen::Vector3d::Zero(), map.lattice.frame);
+  map::GridMap drone = surfaceMap(fixed, Eigen::Vector3d::Zero(), map.lattice.frame);
+  fillBetween(drone);
   map.fixed_greenness = greennessOf(drone);
   step("strips");
   for (const StripInput& input : inputs) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace agricolmap::fuse {
 namespace {
@@ -37,6 +39,19 @@ struct Sums {
   float exg = 0.0F;
   std::array<float, 3> colour{};
   float points = 0.0F;
+
+  void add(Rgb other) {
+    colour[0] += static_cast<float>(other.r);
+    colour[1] += static_cast<float>(other.g);
+    colour[2] += static_cast<float>(other.b);
+  }
+  /// A whole cell as if it were one point.
+  void add(const map::GridMap& map, int row, int col) {
+    points += 1.0F;
+    height += map.height(row, col);
+    exg += map.exg(row, col);
+    add(map.colour(row, col));
+  }
 };
 
 /// Index of the cell that a point of the frame lies in.
@@ -120,9 +135,7 @@ map::GridMap surfaceMap(const PointStream& cloud, const Eigen::Vector3d& shift,
       if (batch.rgb.empty()) continue;
       const Rgb colour = batch.rgb[i];
       sum.exg += map::excessGreen(colour, map::ExgKind::kChromatic);
-      sum.colour[0] += static_cast<float>(colour.r);
-      sum.colour[1] += static_cast<float>(colour.g);
-      sum.colour[2] += static_cast<float>(colour.b);
+      sum.add(colour);
     }
   });
   map::GridMap map = emptyMap(frame);
@@ -130,6 +143,24 @@ map::GridMap surfaceMap(const PointStream& cloud, const Eigen::Vector3d& shift,
     if (sums[i].points > 0.0F) setCell(map, i, sums[i], static_cast<float>(highest[i].points));
   }
   return map;
+}
+
+void fillBetween(map::GridMap& map) {
+  constexpr float kLeast = 5.0F;
+  std::vector<std::pair<std::size_t, Sums>> empty;
+  for (int row = 1; row + 1 < map.frame.rows; ++row) {
+    for (int col = 1; col + 1 < map.frame.cols; ++col) {
+      if (map.valid(row, col)) continue;
+      Sums sums;
+      for (int r = row - 1; r <= row + 1; ++r) {
+        for (int c = col - 1; c <= col + 1; ++c) {
+          if (map.valid(r, c)) sums.add(map, r, c);
+        }
+      }
+      if (sums.points >= kLeast) empty.emplace_back(map.weight.index(row, col), sums);
+    }
+  }
+  for (const auto& [i, sums] : empty) setCell(map, i, sums, kBetween);
 }
 
 map::GridMap coarsened(const map::GridMap& fine, int factor) {
@@ -146,13 +177,7 @@ map::GridMap coarsened(const map::GridMap& fine, int factor) {
         for (int c = col * factor; c < std::min(fine.frame.cols, (col + 1) * factor); ++c) {
           if (!fine.valid(r, c)) continue;
           weight += fine.weight(r, c);
-          sums.points += 1.0F;
-          sums.height += fine.height(r, c);
-          sums.exg += fine.exg(r, c);
-          const Rgb colour = fine.colour(r, c);
-          sums.colour[0] += static_cast<float>(colour.r);
-          sums.colour[1] += static_cast<float>(colour.g);
-          sums.colour[2] += static_cast<float>(colour.b);
+          sums.add(fine, r, c);
         }
       }
       if (sums.points > 0.0F) setCell(coarse, coarse.weight.index(row, col), sums, weight);

@@ -22,6 +22,14 @@ double cellFor(double spacing);
 map::GridMap surfaceMap(const PointStream& cloud, const Eigen::Vector3d& shift,
                         const GridFrame& frame);
 
+/// The weight of a cell that has no point and is filled from those around it.
+inline constexpr float kBetween = 1e-3F;
+
+/// Cells without a point that have at least five of their eight neighbours become the mean of
+/// these: where points are about as far apart as cells are wide, chance leaves cells empty that are
+/// no holes.
+void fillBetween(map::GridMap& map);
+
 /// Blocks of `factor` × `factor` cells as one: means over the cells that are filled.
 map::GridMap coarsened(const map::GridMap& fine, int factor);
 

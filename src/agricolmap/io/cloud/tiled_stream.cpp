@@ -77,7 +77,8 @@ TiledStream::TiledStream(const PointStream& source, double tile)
   const Eigen::Vector2d extent = box_.extent().head<2>().cast<double>().cwiseMax(0.0);
   tile_ = static_cast<float>(std::max(tile, std::sqrt(extent.prod() / kMostTiles)));
   const auto count = [&](double length) {
-    return static_cast<int>(std::min(kMostTiles, std::floor(length / tile_) + 1.0));
+    return static_cast<int>(
+        std::min(kMostTiles, std::floor(length / static_cast<double>(tile_)) + 1.0));
   };
   cols_ = count(extent.x());
   rows_ = count(extent.y());

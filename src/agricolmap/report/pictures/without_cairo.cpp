@@ -1,6 +1,7 @@
 // Stands for the pictures where Cairo is not built in.
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
+#include "agricolmap/report/pictures/shared_map_picture.hpp"
 
 namespace agricolmap::report {
 
@@ -11,6 +12,11 @@ std::vector<std::string> pictureNames() { return {}; }
 std::vector<std::string> writePictures(const io::OutputPath& /*dir*/,
                                        const pipeline::Registration& /*registration*/,
                                        const PictureInfo& /*info*/) {
+  throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
+}
+
+void writeSharedMapPicture(const io::OutputPath& /*path*/, const fuse::SharedMap& /*map*/,
+                           const std::string& /*name*/) {
   throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
 }
 
