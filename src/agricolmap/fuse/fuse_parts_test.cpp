@@ -16,11 +16,12 @@ namespace {
 
 using test::groundCloud;
 
-TEST(CellFor, NestsAndLeavesRoom) {
+TEST(CellFor, LeavesRoomAndIsEasilySaid) {
   EXPECT_DOUBLE_EQ(cellFor(0.014), 0.02);
-  EXPECT_DOUBLE_EQ(cellFor(0.02), 0.05);
-  EXPECT_DOUBLE_EQ(cellFor(0.004), 0.005);
+  EXPECT_DOUBLE_EQ(cellFor(0.027), 0.03);
+  EXPECT_DOUBLE_EQ(cellFor(0.0051), 0.006);
   EXPECT_DOUBLE_EQ(cellFor(0.0001), 0.005);
+  EXPECT_DOUBLE_EQ(cellFor(7.0), 1.0);
 }
 
 TEST(SurfaceMap, ShowsWhatLiesOnTop) {

@@ -70,15 +70,15 @@ Lattice latticeOf(const PointStream& fixed, const std::vector<StripInput>& strip
   double cell = options.cell > 0.0 ? options.cell : cellFor(all.spacing);
   const double area = all.box.volume();
   if (area / (cell * cell) > kMostCells) {
-    const double least = cellFor(std::sqrt(area / kMostCells) / 1.2);
+    const double least = cellFor(std::sqrt(area / kMostCells));
     warnings.push_back(fmt::format(
         "the layers have cells of {:.3g} m instead of {:.3g} m: finer ones of {:.0f} x {:.0f} m "
         "take more memory than a map may",
         least, cell, all.box.sizes().x(), all.box.sizes().y()));
     cell = least;
   }
-  const double fine = std::min(cell, cellFor(spacing));
-  return {frameOf(all.box, cell), std::max(1, static_cast<int>(std::lround(cell / fine)))};
+  const int factor = static_cast<int>(std::floor(cell / cellFor(spacing) + 1e-6));
+  return {frameOf(all.box, cell), std::max(1, factor)};
 }
 
 std::vector<const StripCells*> cellsOf(const std::vector<FusedStrip>& strips) {

@@ -101,11 +101,13 @@ void setCell(map::GridMap& map, std::size_t i, const Sums& sums, float weight) {
 }  // namespace
 
 double cellFor(double spacing) {
-  constexpr double kRoom = 1.2;
+  constexpr double kRoom = 1.1;
   constexpr double kLeast = 0.005, kMost = 1.0;
-  for (double power = kLeast / 5.0; power <= kMost; power *= 10.0) {
-    for (const double step : {1.0, 2.0, 5.0}) {
-      if (power * step >= std::max(kLeast, kRoom * spacing) * (1.0 - 1e-9)) return power * step;
+  constexpr std::array kSteps{1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0};
+  const double least = std::max(kLeast, kRoom * spacing) * (1.0 - 1e-9);
+  for (double power = 0.001; power < kMost; power *= 10.0) {
+    for (const double step : kSteps) {
+      if (power * step >= least) return power * step;
     }
   }
   return kMost;

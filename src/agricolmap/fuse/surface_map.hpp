@@ -11,8 +11,8 @@ namespace agricolmap::fuse {
 /// Points no further below the highest of their cell than this are its surface [m].
 inline constexpr double kSkin = 0.02;
 
-/// Side of the cells of which nearly all hold a point, for points this far apart [m]: 1, 2 or 5
-/// times a power of ten, so that cells of several clouds nest.
+/// Side of the cells of which nearly all hold a point, for points this far apart [m]: a tenth more,
+/// rounded up to a number that is easily said, between 5 mm and 1 m.
 double cellFor(double spacing);
 
 /// The map of what lies on top: height, Excess Green and colour are means of the points within
