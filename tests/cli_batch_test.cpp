@@ -22,7 +22,7 @@ class BatchTest : public CliTest {
   /// `kind`: of the pair; the strip of `other_field` is rejected.
   static std::string strip(const std::string& id, const std::string& kind = "same_field",
                            const std::string& more = "") {
-    return "  - {id: " + id + ", map: " + (kind == "same_field" ? "field" : "other_field") +
+    return "  - {id: " + id + ", map: " + (kind == "same_field" ? "field" : "other") +
            ", file: " + pair(kind).ugv() + ", prior: " + pair(kind).prior() + more + "}\n";
   }
   /// All files of the folders of strips, with what does not differ from run to run.
