@@ -165,17 +165,20 @@ std::vector<std::size_t> Batch::keepFinished(const std::vector<std::size_t>& str
   }
   if (there > 0 && !options_.resume && !globals_.overwrite) {
     throw OutputError(fmt::format(
-        "{}: has results of {} strips already; --resume keeps those of which nothing has changed, "
-        "--overwrite does all again",
+        "{}: {} of the strips have results already; --resume keeps those of which nothing has "
+        "changed, --overwrite does all again",
         options_.output.string(), there));
   }
   return left;
 }
 
-/// Hidden folders that killed runs left of these strips.
+/// What killed runs left of these strips and, where they are all there are, of the summary.
 void Batch::removeLeftovers(const std::vector<std::size_t>& strips) const {
   std::set<std::string> ids;
   for (const std::size_t i : strips) ids.insert(manifest_.strips[i].id);
+  if (strips.size() == manifest_.strips.size()) {
+    ids.insert({"summary.csv", "summary.json", "summary.png"});
+  }
   std::error_code error;
   std::vector<fs::path> leftovers;
   for (const fs::directory_entry& entry : fs::directory_iterator(options_.output, error)) {
@@ -188,7 +191,7 @@ void Batch::removeLeftovers(const std::vector<std::size_t>& strips) const {
 
 void Batch::run(const std::vector<std::size_t>& strips, bool grounds) {
   const std::vector<std::size_t> left = keepFinished(strips);
-  removeLeftovers(left);
+  removeLeftovers(strips);
   todo_ = left.size();
   watch_ = {};
   if (!globals_.quiet && left.size() < strips.size()) {

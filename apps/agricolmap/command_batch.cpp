@@ -79,6 +79,8 @@ std::vector<std::size_t> chosenStrips(const BatchArguments& arguments,
   if (!arguments.shard.empty()) return shardOf(arguments.shard, manifest.strips.size());
   std::vector<std::size_t> chosen;
   for (const std::string& item : arguments.items) chosen.push_back(itemOf(item, manifest));
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   if (!arguments.items.empty()) return chosen;
   chosen.resize(manifest.strips.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});

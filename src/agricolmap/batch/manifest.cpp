@@ -18,12 +18,20 @@ namespace agricolmap::batch {
 namespace fs = std::filesystem;
 namespace {
 
+/// The file of a map or strip.
+struct FileText {
+  Text name;
+  std::string model;  ///< surface model of an orthomosaic; both stand as they are to be opened
+
+  std::string joined() const { return name.value + "," + model; }
+};
+
 /// What of a strip other strips may take over, and the maps' entries have in part.
 struct StripEntry {
   int line = 0;
-  std::optional<Text> id, map, file, crs, prior, path, date, like;
+  std::optional<Text> id, map, crs, prior, path, date, like;
+  std::optional<FileText> file;
   SettingsPatch settings;
-  std::vector<std::string> files;  ///< an orthomosaic and its surface model
 };
 
 std::vector<std::string> withSettings(std::vector<std::string> names) {
@@ -81,18 +89,20 @@ class Reader {
 
   void readMap(const YAML::Node& node);
   void readEntry(const YAML::Node& node);
-  std::optional<Text> readFile(const Fields& fields, const std::string& what);
+  std::optional<FileText> readFile(const Fields& fields, const std::string& what);
   void checkId(const Text& id, std::map<std::string, int>& seen, const char* what);
   std::string placed(const std::string& name) const {
     return (folder_ / name).lexically_normal().string();
   }
-  /// A file that must be there; empty where none is named.
-  std::string existing(const std::optional<Text>& name, const FoundFile& strip,
-                       const std::string& what);
+  /// A file that must be there.
+  std::string existing(const Text& name, const std::string& what);
+  /// The same of a strip, by whose file the name is filled in; empty where none is named.
+  std::string filled(const std::optional<Text>& name, const FoundFile& strip,
+                     const std::string& what);
   bool inherit(std::size_t entry, std::vector<std::size_t>& chain);
   StripEntry merged(const std::vector<std::size_t>& chain) const;
   void makeStrips(std::size_t index);
-  void fill(const StripEntry& entry, const FoundFile& file, Strip strip);
+  void addStrip(const StripEntry& entry, const FoundFile& file, Strip strip);
   std::optional<std::size_t> mapOf(const StripEntry& entry);
 
   Manifest& manifest_;
@@ -119,26 +129,27 @@ void Reader::checkId(const Text& id, std::map<std::string, int>& seen, const cha
   }
 }
 
-/// A name, or two of an orthomosaic and its surface model, as io::mapFilesOf joins them.
-std::optional<Text> Reader::readFile(const Fields& fields, const std::string& what) {
+std::optional<FileText> Reader::readFile(const Fields& fields, const std::string& what) {
   const YAML::Node* const node = fields.find("file");
-  if (node == nullptr) return std::nullopt;
-  if (!node->IsSequence()) return fields.text("file");
-  const int line = config::lineOf(*node);
-  std::string joined;
-  for (const YAML::Node& one : *node) {
-    if (!one.IsScalar() || node->size() > 2) {
-      problems_.add(line,
-                    fmt::format("the file of {} is one name, or a list of two: an orthomosaic "
-                                "and its surface model",
-                                what));
-      return std::nullopt;
-    }
-    const std::string file = placed(one.Scalar());
-    if (!fs::exists(file)) problems_.add(line, fmt::format("{}: there is no such file", file));
-    joined += (joined.empty() ? "" : ",") + file;
+  if (node == nullptr) {
+    problems_.add(fields.line(), what + " needs a file");
+    return std::nullopt;
   }
-  return Text{joined, -line};  // below 0: looked for already
+  if (!node->IsSequence()) {
+    const std::optional<Text> name = fields.text("file");
+    return name ? std::optional(FileText{*name, ""}) : std::nullopt;
+  }
+  const int line = config::lineOf(*node);
+  if (node->size() != 2 || !(*node)[0].IsScalar() || !(*node)[1].IsScalar()) {
+    problems_.add(line, fmt::format("the file of {} is one name, or a list of two: an orthomosaic "
+                                    "and its surface model",
+                                    what));
+    return std::nullopt;
+  }
+  const std::string ortho = existing({(*node)[0].Scalar(), line}, "the orthomosaic");
+  const std::string model = existing({(*node)[1].Scalar(), line}, "the surface model");
+  if (ortho.empty() || model.empty()) return std::nullopt;
+  return FileText{{ortho, line}, model};
 }
 
 void Reader::readMap(const YAML::Node& node) {
@@ -149,10 +160,13 @@ void Reader::readMap(const YAML::Node& node) {
   const auto file = readFile(fields, "a map");
   if (id) checkId(*id, map_ids_, "a map");
   if (!id) problems_.add(fields.line(), "a map needs an id");
-  if (!file) problems_.add(fields.line(), "a map needs a file");
   map.id = id ? id->value : "";
-  map.crs = fields.text("crs").value_or(Text{}).value;
-  if (file) map.file = file->line < 0 ? file->value : existing(file, {}, "the map's file");
+  if (const auto crs = fields.text("crs")) {
+    const std::string named = placed(crs->value);
+    map.crs = fs::is_regular_file(named) ? named : crs->value;
+  }
+  if (file)
+    map.file = file->model.empty() ? existing(file->name, "the map's file") : file->joined();
   manifest_.maps.push_back(std::move(map));
 }
 
@@ -175,21 +189,25 @@ void Reader::readEntry(const YAML::Node& node) {
     problems_.add(entry.date->line,
                   fmt::format("'{}' is no day; write it as 2026-05-31", entry.date->value));
   }
-  if (!entry.file) problems_.add(entry.line, "a strip needs a file");
   entries_.push_back(std::move(entry));
 }
 
-std::string Reader::existing(const std::optional<Text>& name, const FoundFile& strip,
-                             const std::string& what) {
+std::string Reader::existing(const Text& name, const std::string& what) {
+  const std::string file = placed(name.value);
+  if (fs::is_regular_file(file)) return file;
+  problems_.add(name.line, fmt::format("{}: there is no such file ({})", file, what));
+  return {};
+}
+
+std::string Reader::filled(const std::optional<Text>& name, const FoundFile& strip,
+                           const std::string& what) {
   if (!name) return {};
   try {
-    const std::string file = placed(filledIn(name->value, strip));
-    if (fs::is_regular_file(file)) return file;
-    problems_.add(name->line, fmt::format("{}: there is no such file ({})", file, what));
+    return existing({filledIn(name->value, strip), name->line}, what);
   } catch (const UsageError& error) {
     problems_.add(name->line, error.what());
+    return {};
   }
-  return {};
 }
 
 /// The entry and those that it is like, one after the other; false where that goes in a circle or
@@ -286,33 +304,35 @@ void Reader::makeStrips(std::size_t index) {
     problems_.add(entry.line, error.what());
   }
   strip.date = entry.date ? dayOf(entry.date->value) : 0;
-  const std::string& name = entry.file->value;
-  const bool joined = entry.file->line < 0;
-  if (joined || fs::exists(placed(name)) || !hasWildcards(name)) {
-    const std::string file = joined ? name : existing(entry.file, {}, "the strip's file");
-    fill(entry, {file, {}}, std::move(strip));
-    return;
+  const Text& name = entry.file->name;
+  if (!entry.file->model.empty()) {
+    strip.file = entry.file->joined();
+    addStrip(entry, {name.value, {}}, std::move(strip));
+  } else if (!hasWildcards(name.value) || fs::exists(placed(name.value))) {
+    strip.file = existing(name, "the strip's file");
+    addStrip(entry, {placed(name.value), {}}, std::move(strip));
+  } else {
+    const std::vector<FoundFile> files = filesLike(folder_, name.value);
+    if (files.empty()) {
+      problems_.add(name.line, fmt::format("no file is like {}", placed(name.value)));
+    }
+    for (const FoundFile& file : files) {
+      strip.file = file.file.lexically_normal().string();
+      addStrip(entry, file, strip);
+    }
   }
-  const std::vector<FoundFile> files = filesLike(folder_, name);
-  if (files.empty()) {
-    problems_.add(entry.file->line, fmt::format("no file is like {}", placed(name)));
-  }
-  for (const FoundFile& file : files) fill(entry, file, strip);
 }
 
-void Reader::fill(const StripEntry& entry, const FoundFile& file, Strip strip) {
-  strip.file = file.file.lexically_normal().string();
+void Reader::addStrip(const StripEntry& entry, const FoundFile& file, Strip strip) {
+  const Text pattern = entry.id.value_or(Text{"{name}", entry.line});
   try {
-    const Text pattern = entry.id.value_or(Text{"{name}", entry.line});
-    const Text id{filledIn(pattern.value, file), pattern.line};
-    // A file that is not there is told of as such.
-    if (entry.id || !strip.file.empty()) checkId(id, strip_ids_, "a strip");
-    strip.id = id.value;
+    strip.id = filledIn(pattern.value, file);
+    checkId({strip.id, pattern.line}, strip_ids_, "a strip");
   } catch (const UsageError& error) {
-    problems_.add(entry.id->line, error.what());
+    problems_.add(pattern.line, error.what());
   }
-  strip.prior = existing(entry.prior, file, "the initial guess");
-  strip.path = existing(entry.path, file, "the robot's path");
+  strip.prior = filled(entry.prior, file, "the initial guess");
+  strip.path = filled(entry.path, file, "the robot's path");
   if (entry.crs) {
     // A file with it, or what it is called.
     const std::string crs = placed(entry.crs->value);

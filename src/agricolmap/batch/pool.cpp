@@ -14,8 +14,8 @@ namespace {
 
 /// Estimates are believed, and only corrected upwards, until so many items are done.
 constexpr std::size_t kFirst = 3;
-constexpr double kMargin = 1.25;  ///< on what was measured
-constexpr std::chrono::milliseconds kBetweenLooks{100};
+constexpr double kMargin = 1.25;      ///< on what was measured
+constexpr double kLeastFactor = 0.2;  ///< no item is believed to need less of what was thought
 
 class Pool {
  public:
@@ -60,12 +60,12 @@ class Pool {
         ++running_count_;
         return Item{next_++, estimate};
       }
-      changed_.wait_for(lock, kBetweenLooks);
+      changed_.wait_for(lock, limits_.between_looks);  // a stop tells nobody
     }
   }
 
   bool fits(double estimate) const {
-    const double factor = done_ < kFirst ? std::max(1.0, measured_) : measured_;
+    const double factor = std::max(done_ < kFirst ? 1.0 : kLeastFactor, measured_);
     return before_ + factor * estimate <= limits_.memory;
   }
 
@@ -73,8 +73,7 @@ class Pool {
   void watch() {
     std::unique_lock lock(mutex_);
     const std::size_t threads = std::min(limits_.jobs, work_.count);
-    while (left_ < threads) {
-      changed_.wait_for(lock, kBetweenLooks);
+    while (!changed_.wait_for(lock, limits_.between_looks, [&] { return left_ == threads; })) {
       if (running_ <= 0.0) continue;
       const double taken = std::max(0.0, work_.memory_in_use() - before_);
       measured_ = std::max(measured_, kMargin * taken / running_);

@@ -1,6 +1,7 @@
 // Many pieces of work on a few threads, as many at once as memory allows.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <stop_token>
@@ -10,6 +11,7 @@ namespace agricolmap::batch {
 struct PoolLimits {
   std::size_t jobs = 1;  ///< at once, at most
   double memory = 0.0;   ///< that all of them may take [bytes]; one is always let run
+  std::chrono::milliseconds between_looks{100};  ///< at the memory in use
 };
 
 /// What the pool asks and does. All but `work` are called by one thread at a time.

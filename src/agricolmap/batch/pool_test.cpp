@@ -15,6 +15,7 @@ namespace agricolmap::batch {
 namespace {
 
 constexpr auto kWork = std::chrono::milliseconds(15);
+constexpr auto kLook = std::chrono::milliseconds(1);
 
 /// Notes what runs, and how many at once.
 class Trace {
@@ -47,7 +48,7 @@ PoolWork workOf(Trace& trace, std::size_t count, double each) {
 TEST(Pool, DoesEachItemOnceWithAsManyAtOnceAsAllowed) {
   for (const std::size_t jobs : {1, 3}) {
     Trace trace;
-    runPool(workOf(trace, 20, 1.0), {jobs, 100.0}, {});
+    runPool(workOf(trace, 20, 1.0), {jobs, 100.0, kLook}, {});
     std::vector<std::size_t> done = trace.begun();
     std::sort(done.begin(), done.end());
     ASSERT_EQ(done.size(), 20U);
@@ -60,7 +61,7 @@ TEST(Pool, RunsNoMoreAtOnceThanFitIntoMemory) {
   Trace trace;
   PoolWork work = workOf(trace, 12, 10.0);
   work.memory_in_use = [&] { return 10.0 * trace.running(); };  // as was thought
-  runPool(work, {8, 35.0}, {});
+  runPool(work, {8, 35.0, kLook}, {});
   EXPECT_EQ(trace.begun().size(), 12U);
   EXPECT_LE(trace.most(), 3);
   EXPECT_GE(trace.most(), 2);
@@ -68,7 +69,7 @@ TEST(Pool, RunsNoMoreAtOnceThanFitIntoMemory) {
 
 TEST(Pool, RunsWhatIsTooLargeAlone) {
   Trace trace;
-  runPool(workOf(trace, 5, 100.0), {4, 10.0}, {});
+  runPool(workOf(trace, 5, 100.0), {4, 10.0, kLook}, {});
   EXPECT_EQ(trace.begun().size(), 5U);
   EXPECT_EQ(trace.most(), 1);
 }
@@ -78,7 +79,7 @@ TEST(Pool, LearnsFromWhatItemsTake) {
   Trace trace;
   PoolWork work = workOf(trace, 60, 10.0);
   work.memory_in_use = [&] { return 1.0 * trace.running(); };
-  runPool(work, {6, 12.0}, {});
+  runPool(work, {6, 12.0, kLook}, {});
   EXPECT_EQ(trace.begun().size(), 60U);
   EXPECT_GT(trace.most(), 3);
   // Thought to need 1, they need 10.
@@ -90,7 +91,7 @@ TEST(Pool, LearnsFromWhatItemsTake) {
     other.run(i);
     if (i > 40) late = std::max<int>(late, other.running());
   };
-  runPool(heavy, {6, 26.0}, {});
+  runPool(heavy, {6, 26.0, kLook}, {});
   EXPECT_EQ(other.begun().size(), 60U);
   EXPECT_LE(late, 2);
 }
@@ -103,7 +104,7 @@ TEST(Pool, BeginsNothingAfterAStopWasAskedFor) {
     trace.run(i);
     if (i == 4) source.request_stop();
   };
-  runPool(work, {2, 100.0}, source.get_token());
+  runPool(work, {2, 100.0, kLook}, source.get_token());
   EXPECT_GE(trace.begun().size(), 5U);
   EXPECT_LE(trace.begun().size(), 8U);
   EXPECT_EQ(trace.running(), 0);
@@ -111,7 +112,7 @@ TEST(Pool, BeginsNothingAfterAStopWasAskedFor) {
 
 TEST(Pool, NeedsNoItems) {
   Trace trace;
-  runPool(workOf(trace, 0, 1.0), {2, 1.0}, {});
+  runPool(workOf(trace, 0, 1.0), {2, 1.0, kLook}, {});
   EXPECT_TRUE(trace.begun().empty());
 }
 

@@ -24,10 +24,10 @@ double numberOf(const Json& json) {
   return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Name, size and time of change of a file, in a line.
+/// Name, relative to the manifest's absolute folder, size and time of change of a file, in a line.
 std::string stateOf(const fs::path& file, const fs::path& folder) {
   std::error_code error;
-  const fs::path name = file.lexically_relative(folder);
+  const fs::path name = fs::absolute(file).lexically_normal().lexically_relative(folder);
   const std::uintmax_t size = fs::file_size(file, error);
   if (error) return fmt::format("{} -\n", name.string());
   const auto changed = fs::last_write_time(file, error).time_since_epoch().count();
@@ -126,7 +126,7 @@ std::optional<Record> readRecord(const fs::path& folder) {
 }
 
 std::string fingerprintOf(const Strip& strip, const Manifest& manifest) {
-  const fs::path folder = manifest.file.parent_path();
+  const fs::path folder = fs::absolute(manifest.file).lexically_normal().parent_path();
   const MapEntry& map = manifest.maps[strip.map];
   std::string text = fmt::format("format {}\n", kVersion);
   text += statesOf(map.file, folder) + statesOf(strip.file, folder);

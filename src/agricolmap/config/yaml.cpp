@@ -155,7 +155,7 @@ std::vector<std::string> loadYaml(const std::filesystem::path& file, OptionTable
   return loadYamlText(text.str(), file.string(), table);
 }
 
-int lineOf(const YAML::Node& node) { return node.Mark().line + 1; }
+int lineOf(const YAML::Node& node) { return std::max(1, node.Mark().line + 1); }
 
 YAML::Node parseYaml(const std::string& text, const std::string& name, const std::string& what) {
   try {

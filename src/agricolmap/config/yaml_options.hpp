@@ -16,7 +16,7 @@ using OptionTexts = std::map<std::string, std::string>;
 /// Hears what is wrong, and in which line.
 using OnProblem = std::function<void(int line, const std::string& what)>;
 
-/// Line of a node, counted from 1.
+/// Line of a node, counted from 1; of an empty document, 1.
 int lineOf(const YAML::Node& node);
 
 /// The one document of `text`. Throws UsageError, with `name` for the file and the line, where it
