@@ -123,6 +123,17 @@ TEST_F(DiffTest, FindsWhatGrewAndNothingElse) {
   EXPECT_GT(json["cover"]["mean_change"], 0.0);
 }
 
+TEST_F(DiffTest, InfoSaysWhatAMapIsMadeOf) {
+  const std::string out = run({"info", writeMap("june", {})}).out;
+  for (const char* part : {"of version 1", "UTM zone 32N", "sources    1", "june.laz",
+                           "layers     5: cover, error, plant_height, source, surface",
+                           "400 x 300 of 0.02 m", "500000.000 to 500008.000 m"}) {
+    EXPECT_NE(out.find(part), std::string::npos) << part << " is not in:\n" << out;
+  }
+  std::filesystem::create_directories(inFolder("empty"));
+  expectFailure({"info", inFolder("empty")}, 3, {"empty", "map.json", "fuse"});
+}
+
 TEST_F(DiffTest, ComparesGridsOfOtherCellsAndCorners) {
   Field coarse;
   coarse.cell = 0.05;
@@ -181,7 +192,7 @@ TEST_F(DiffTest, RefusesMapsThatDoNotGoTogether) {
   refuses(writeMap("zone", field), {"different coordinate systems", "gdalwarp"});
   field = {};
   field.south_west.x() += 1000.0;
-  refuses(writeMap("away", field), {"away", "do not overlap", "500000.00"});
+  refuses(writeMap("away", field), {"away", "do not overlap", "500000.0"});
   refuses(describe("newer", R"({"format": "agricolmap-map", "format_version": 2})"),
           {"newer/map.json", "version 2", "update"});
   refuses(describe("torn", R"({"format": "agricolmap-m)"), {"torn/map.json", "damaged", "fuse"});

@@ -9,6 +9,7 @@
 #include "agricolmap/core/robust.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "change_files.hpp"
+#include "command_diff.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -74,8 +75,7 @@ LayerChange changeOf(const LayerPair& pair, Summary summary) {
 void warnOfFrames(const ChangeMap& a, const ChangeMap& b, bool given,
                   std::vector<std::string>& warnings) {
   if (given || !a.folder() || !b.folder()) return;
-  const nlohmann::json one = a.folder()->fixedSource();
-  if (!one.is_null() && one == b.folder()->fixedSource()) return;
+  if (a.folder()->hasFixedOf(*b.folder())) return;
   warnings.push_back(fmt::format(
       "{} and {} do not hang on one drone map, and what two of them lie apart is in neither's "
       "errors; say what is expected of it, in metres: --frame-error HEIGHT PLANE",

@@ -15,6 +15,22 @@ constexpr const char* kFormat = "agricolmap-map";
 constexpr int kVersion = 1;
 constexpr int kFixedCode = 1;
 
+/// What map.json says of the drone's map that all hangs on; null where it says nothing. How many of
+/// its points the fused cloud took differs with the strips.
+nlohmann::json fixedSource(const nlohmann::json& description) {
+  const auto sources = description.find("sources");
+  if (sources == description.end() || !sources->is_array()) return nullptr;
+  for (const nlohmann::json& source : *sources) {
+    if (!source.is_object() || source.value("code", nlohmann::json()) != kFixedCode) continue;
+    nlohmann::json named;
+    for (const char* key : {"file", "date", "points"}) {
+      named[key] = source.value(key, nlohmann::json());
+    }
+    return named;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::optional<fs::path> MapFolder::layer(const std::string& name) const {
@@ -24,13 +40,9 @@ std::optional<fs::path> MapFolder::layer(const std::string& name) const {
   return path;
 }
 
-nlohmann::json MapFolder::fixedSource() const {
-  const auto sources = description.find("sources");
-  if (sources == description.end() || !sources->is_array()) return nullptr;
-  for (const nlohmann::json& source : *sources) {
-    if (source.is_object() && source.value("code", nlohmann::json()) == kFixedCode) return source;
-  }
-  return nullptr;
+bool MapFolder::hasFixedOf(const MapFolder& other) const {
+  const nlohmann::json own = fixedSource(description);
+  return !own.is_null() && own == fixedSource(other.description);
 }
 
 MapFolder openMapFolder(const fs::path& folder) {

@@ -14,8 +14,8 @@ struct MapFolder {
 
   /// layers/NAME.tif; nothing where the map has no such layer.
   std::optional<std::filesystem::path> layer(const std::string& name) const;
-  /// What map.json says of the drone's map that all hangs on; null where it says nothing.
-  nlohmann::json fixedSource() const;
+  /// Whether both hang on one drone's map: of one name, date and number of points.
+  bool hasFixedOf(const MapFolder& other) const;
 };
 
 /// Throws InputError when the folder has no map.json, or one that is damaged, of another kind or
