@@ -1,4 +1,4 @@
-// agricolmap info CLOUD
+// agricolmap info CLOUD, or of a shared map
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/offset_file.hpp"
 #include "common.hpp"
+#include "map_info.hpp"
 
 namespace agricolmap {
 namespace {
@@ -51,6 +52,11 @@ Eigen::Vector3d mostOf(const Cloud& cloud) {
 }
 
 ExitCode runInfo(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    printMapInfo(path);
+    return ExitCode::kOk;
+  }
   const Stopwatch watch;
   const io::MapFiles files = io::mapFilesOf(path);
   const Cloud cloud = io::readMap(files);
@@ -104,8 +110,10 @@ ExitCode runInfo(const std::string& path) {
 
 CommandSlot addInfoCommand(CLI::App& app, const Globals&) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("info", "Say what is in a cloud");
-  command->add_option("CLOUD", *path, "LAS, LAZ, PLY, PCD, text, or ORTHO.tif,DSM.tif")->required();
+  CLI::App* command = app.add_subcommand("info", "Say what is in a cloud or a map");
+  command
+      ->add_option("CLOUD", *path, "LAS, LAZ, PLY, PCD, text, ORTHO.tif,DSM.tif, or a map of fuse")
+      ->required();
   return {command, [path] { return runInfo(*path); }};
 }
 

@@ -19,6 +19,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/processor.hpp"
 #include "agricolmap/io/raster/raster_file.hpp"
+#include "command_diff.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 #include "support/signal_stop.hpp"
@@ -105,8 +106,8 @@ ExitCode run(int argc, char** argv) {
       addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
       addBatchCommand(app, globals),    addConvertCommand(app, globals),
       addImportCommand(app, globals),   addApplyCommand(app, globals),
-      addFuseCommand(app, globals),     addInfoCommand(app, globals),
-      addDocumentCommand(app, globals)};
+      addFuseCommand(app, globals),     addDiffCommand(app, globals),
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
 
 namespace agricolmap::change {
@@ -79,7 +78,7 @@ bool sameGrid(const GridFrame& a, const GridFrame& b) {
          (a.corner - b.corner).cwiseAbs().maxCoeff() < kRounding * a.cell;
 }
 
-GridFrame commonGrid(const GridFrame& a, const GridFrame& b) {
+std::optional<GridFrame> commonGrid(const GridFrame& a, const GridFrame& b) {
   const bool a_coarser = a.cell >= b.cell * (1.0 - kRounding);
   const GridFrame& coarse = a_coarser ? a : b;
   const GridFrame& fine = a_coarser ? b : a;
@@ -90,7 +89,7 @@ GridFrame commonGrid(const GridFrame& a, const GridFrame& b) {
   const Eigen::Array2d high = low + sizeOf(fine).array() * (fine.cell / coarse.cell);
   const Eigen::Array2d first = (low - kRounding).ceil().max(0.0);
   const Eigen::Array2d last = (high + kRounding).floor().min(sizeOf(coarse).array());
-  if ((last <= first).any()) throw InputError("the two maps do not overlap by a whole cell");
+  if ((last <= first).any()) return std::nullopt;
   GridFrame common;
   common.corner = coarse.corner + coarse.cell * first.matrix();
   common.cell = coarse.cell;

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "agricolmap/core/raster.hpp"
 
 namespace agricolmap::change {
 
 /// Of two frames about one origin: the cells of the coarser one (of `a` where both are alike) that
-/// lie within both. Throws InputError when there are none.
-GridFrame commonGrid(const GridFrame& a, const GridFrame& b);
+/// lie within both; nothing where there are none.
+std::optional<GridFrame> commonGrid(const GridFrame& a, const GridFrame& b);
 
 /// Whether two frames have the same cells.
 bool sameGrid(const GridFrame& a, const GridFrame& b);

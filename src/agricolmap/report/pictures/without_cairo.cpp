@@ -1,5 +1,6 @@
 // Stands for the pictures where Cairo is not built in.
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/report/pictures/change_picture.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 #include "agricolmap/report/pictures/shared_map_picture.hpp"
 
@@ -17,6 +18,10 @@ std::vector<std::string> writePictures(const io::OutputPath& /*dir*/,
 
 void writeSharedMapPicture(const io::OutputPath& /*path*/, const fuse::SharedMap& /*map*/,
                            const std::string& /*name*/) {
+  throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
+}
+
+void writeChangePicture(const io::OutputPath& /*path*/, const ChangeScene& /*scene*/) {
   throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
 }
 

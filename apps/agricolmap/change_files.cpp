@@ -1,0 +1,131 @@
+#include "change_files.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/raster/geo_writer.hpp"
+#include "agricolmap/report/pictures/change_picture.hpp"
+
+namespace agricolmap {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json toJson(const change::Share& share) {
+  const double half = change::kLevel95 * share.deviation;
+  return {{"cells", share.cells},
+          {"area_m2", share.area},
+          {"volume_m3", share.volume},
+          {"volume_interval_m3", {share.volume - half, share.volume + half}},
+          {"mean_m", share.mean()},
+          {"mean_deviation_m", share.meanDeviation()},
+          {"median_m", share.median}};
+}
+
+ordered_json toJson(const LayerChange& layer, const char* kind, const char* unit) {
+  const auto key = [&](const char* when) { return fmt::format("{}_{}{}", kind, when, unit); };
+  return {{"cells", layer.cells},
+          {key("before"), layer.before},
+          {key("after"), layer.after},
+          {key("change"), layer.after - layer.before}};
+}
+
+void writeBands(const io::OutputPath& path, const MapChange& found,
+                const std::vector<io::GeoBand>& bands) {
+  io::GeoLayer layer;
+  layer.frame = found.ground.frame;
+  layer.origin = found.ground.origin;
+  layer.crs = found.ground.crs;
+  layer.bands = bands;
+  layer.nodata = std::numeric_limits<double>::quiet_NaN();
+  layer.metadata = {{"AGRICOLMAP_BEFORE", found.name_a}, {"AGRICOLMAP_AFTER", found.name_b}};
+  io::writeLayer(path, layer);
+}
+
+/// "12.3 m2, 1.20 m3 (0.80 to 1.60)".
+std::string describe(const change::Share& share) {
+  const double half = change::kLevel95 * share.deviation;
+  return fmt::format("{:.1f} m2, {:.2f} m3 ({:.2f} to {:.2f})", share.area, share.volume,
+                     share.volume - half, share.volume + half);
+}
+
+}  // namespace
+
+ordered_json toJson(const MapChange& found) {
+  const GridFrame& frame = found.ground.frame;
+  const Eigen::Vector2d corner = found.ground.origin.head<2>() + frame.corner;
+  ordered_json json = {
+      {"format", "agricolmap-change"},
+      {"format_version", 1},
+      {"before", found.name_a},
+      {"after", found.name_b},
+      {"grid",
+       {{"south_west", {corner.x(), corner.y()}},
+        {"cell_m", frame.cell},
+        {"rows", frame.rows},
+        {"cols", frame.cols},
+        {"crs", found.ground.crs}}},
+      {"frame_error", {{"height_m", found.frames.height}, {"plane_m", found.frames.plane}}},
+      {"surface",
+       {{"median_detection_m", found.totals.median_detection},
+        {"compared", toJson(found.totals.compared)},
+        {"rise", toJson(found.totals.rise)},
+        {"fall", toJson(found.totals.fall)}}}};
+  if (found.totals.stable) json["surface"]["bare_ground"] = toJson(*found.totals.stable);
+  if (found.plant_height) json["plant_height"] = toJson(*found.plant_height, "median", "_m");
+  if (found.cover) json["cover"] = toJson(*found.cover, "mean", "");
+  return json;
+}
+
+std::vector<std::string> describe(const MapChange& found) {
+  const change::Totals& totals = found.totals;
+  const change::Share& all = totals.compared;
+  std::vector<std::string> lines = {
+      fmt::format("compared    {}, by {:.1f} +- {:.1f} cm on average", describe(all),
+                  100.0 * all.mean(), 100.0 * change::kLevel95 * all.meanDeviation()),
+      fmt::format("rose        {}, by {:.1f} cm (median)", describe(totals.rise),
+                  100.0 * totals.rise.median),
+      fmt::format("fell        {}, by {:.1f} cm (median)", describe(totals.fall),
+                  100.0 * totals.fall.median),
+      fmt::format("level       {:.1f} cm (median): what a cell must exceed",
+                  100.0 * totals.median_detection)};
+  if (totals.stable && totals.stable->cells > 0) {
+    lines.push_back(fmt::format("bare ground {:.1f} m2, by {:.1f} +- {:.1f} cm on average",
+                                totals.stable->area, 100.0 * totals.stable->mean(),
+                                100.0 * change::kLevel95 * totals.stable->meanDeviation()));
+  }
+  if (found.plant_height) {
+    lines.push_back(fmt::format("plants      {:.1f} cm high before, {:.1f} cm after (median)",
+                                100.0 * found.plant_height->before,
+                                100.0 * found.plant_height->after));
+  }
+  if (found.cover) {
+    lines.push_back(fmt::format("cover       {:.1f} % before, {:.1f} % after",
+                                100.0 * found.cover->before, 100.0 * found.cover->after));
+  }
+  return lines;
+}
+
+void writeChange(const io::OutputPath& dir, const MapChange& found, bool picture) {
+  writeBands(dir / "height_change.tif", found,
+             {{&found.heights.change, "change", "m"},
+              {&found.heights.detection, "level of detection", "m"},
+              {&found.heights.significant, "significant", ""}});
+  if (found.plant_height) {
+    writeBands(dir / "plant_height_change.tif", found,
+               {{&found.plant_height->change, "change", "m"}});
+  }
+  if (found.cover) {
+    writeBands(dir / "cover_change.tif", found, {{&found.cover->change, "change", ""}});
+  }
+  io::writeText(dir / "change.json", toJson(found).dump(2) + "\n");
+  if (!picture) return;
+  report::writeChangePicture(
+      dir / "change.png",
+      {found.heights, found.ground.frame,
+       fmt::format("{} (before) and {} (after)", found.name_a, found.name_b), describe(found)});
+}
+
+}  // namespace agricolmap

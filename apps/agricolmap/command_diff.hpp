@@ -1,0 +1,5 @@
+#pragma once
+#include "common.hpp"
+namespace agricolmap {
+CommandSlot addDiffCommand(CLI::App& app, const Globals& globals);
+}
