@@ -63,6 +63,12 @@ std::vector<fuse::StripInput> inputsOf(const MapPlan& plan, const MapClouds& clo
   return inputs;
 }
 
+fuse::StripPoints pointsOf(const MapClouds& clouds) {
+  fuse::StripPoints points;
+  for (const auto& strip : clouds.strips) points.push_back(strip.get());
+  return points;
+}
+
 /// What a fused map of another run would have written: these go when they are not written again.
 bool isForeign(const std::filesystem::path& name) {
   static const std::set<std::string> kFolders{"layers", "fine", "strips"};
@@ -82,7 +88,7 @@ report::MapFacts writeMap(const io::SwappedFolder& folder, const MapPlan& plan,
   for (const MapStrip& strip : plan.strips) facts.strips.push_back(strip.source);
   progress.step("write layers");
   facts.layers = fuse::writeLayers([&](const std::string& name) { return folder.path(name); }, map,
-                                   options, clouds.crs);
+                                   pointsOf(clouds), options, clouds.crs);
   if (!format) return facts;
   progress.step("write cloud");
   facts.cloud = "cloud." + io::endingOf(*format);
@@ -148,7 +154,7 @@ ExitCode runFuse(const FuseArguments& arguments, const Globals& globals) {
   facts.version = AGRICOLMAP_VERSION;
   if (!arguments.no_pictures) {
     progress.step("picture");
-    report::writeSharedMapPicture(folder.path("map.png"), map, arguments.output);
+    report::writeSharedMapPicture(folder.path("map.png"), map, pointsOf(clouds), arguments.output);
   }
   io::writeText(folder.path("map.json"), report::sharedMapJson(map, facts, options));
   throwIfInterrupted();

@@ -108,30 +108,39 @@ double deviationOf(const StripErrors& a, const StripErrors& b, bool height) {
   return std::hypot(own, height ? kHeightDeviation : kOffsetDeviation);
 }
 
-std::optional<Disagreement> compare(const StripCells& first, const StripCells& second,
-                                    const StripErrors& first_errors,
-                                    const StripErrors& second_errors) {
+/// Two of the strips.
+struct Pair {
+  std::size_t first = 0;
+  std::size_t second = 0;
+};
+
+std::optional<Disagreement> compare(const Pair& pair, const std::vector<const StripCells*>& strips,
+                                    const FineStrips& strips_fine,
+                                    const std::vector<StripErrors>& errors) {
+  const StripCells &first = *strips[pair.first], &second = *strips[pair.second];
   const Shared coarse{first.coarse, second.coarse, first.row - second.row, first.col - second.col};
-  Disagreement found;
+  Disagreement found{.first = pair.first, .second = pair.second};
   found.area = coarse.area();
   if (found.area < kLeastArea) return std::nullopt;
   const double cell = first.coarse.frame.cell;
   const Peak rough = peakWithin(coarse, 0, 0, static_cast<int>(std::lround(kFarthest / cell)));
-  const int factor = first.fine.frame.rows / std::max(1, first.coarse.frame.rows);
-  const Shared fine{first.fine, second.fine, coarse.row_offset * factor,
+  const int factor = strips_fine.factor;
+  const map::GridMap first_fine = strips_fine.of(pair.first);
+  const map::GridMap second_fine = strips_fine.of(pair.second);
+  const Shared fine{first_fine, second_fine, coarse.row_offset * factor,
                     coarse.col_offset * factor};
   const Peak peak = peakWithin(fine, rough.row * factor, rough.col * factor, factor + 1);
   if (peak.score < kLeastCorrelation) return std::nullopt;
   std::vector<double> rises;
   fine.each(peak.row, peak.col, [&](std::size_t i, std::size_t k) {
-    rises.push_back(static_cast<double>(second.fine.height[k] - first.fine.height[i]));
+    rises.push_back(static_cast<double>(second_fine.height[k] - first_fine.height[i]));
   });
   const double step = cell / factor;
   found.correlation = peak.score;
   found.offset = {step * (peak.col + peak.between.x()), step * (peak.row + peak.between.y()),
                   median(rises)};
-  const double plane = deviationOf(first_errors, second_errors, false);
-  const double height = deviationOf(first_errors, second_errors, true);
+  const double plane = deviationOf(errors[pair.first], errors[pair.second], false);
+  const double height = deviationOf(errors[pair.first], errors[pair.second], true);
   found.sigmas = std::max(found.offset.head<2>().norm() / plane / std::sqrt(2.0),
                           std::abs(found.offset.z()) / height);
   return found;
@@ -140,15 +149,12 @@ std::optional<Disagreement> compare(const StripCells& first, const StripCells& s
 }  // namespace
 
 std::vector<Disagreement> compareStrips(const std::vector<const StripCells*>& strips,
+                                        const FineStrips& fine,
                                         const std::vector<StripErrors>& errors) {
   std::vector<Disagreement> all;
   for (std::size_t i = 0; i < strips.size(); ++i) {
     for (std::size_t k = i + 1; k < strips.size(); ++k) {
-      if (auto found = compare(*strips[i], *strips[k], errors[i], errors[k])) {
-        found->first = i;
-        found->second = k;
-        all.push_back(*found);
-      }
+      if (auto found = compare({i, k}, strips, fine, errors)) all.push_back(*found);
     }
   }
   return all;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -33,10 +34,17 @@ struct StripErrors {
   double height = 0.0;
 };
 
+/// Strip number i in the strips' cells, `factor` of which make one of the map's along each axis.
+struct FineStrips {
+  int factor = 1;
+  std::function<map::GridMap(std::size_t i)> of;
+};
+
 /// Compares all pairs that share at least 0.5 m² and are alike enough there for their offset to be
 /// told: correlation of the surfaces and of the greenness, within kFarthest, between cells by
 /// parabolas.
 std::vector<Disagreement> compareStrips(const std::vector<const StripCells*>& strips,
+                                        const FineStrips& fine,
                                         const std::vector<StripErrors>& errors);
 
 /// Where each strip moves [m]: the least squares of all offsets that are plausible and of the

@@ -92,7 +92,8 @@ TEST(StripCells, SeesWhereItHasPointsAndNotBehindPlants) {
   EXPECT_FLOAT_EQ(at(1.0, 3.0), 0.0F);   // beyond the strip
   EXPECT_NEAR(at(3.0, 2.42), 0.42, 0.06);
   EXPECT_NEAR(at(3.0, 3.52), 0.48, 0.06);
-  EXPECT_DOUBLE_EQ(cells.fine.frame.cell, 0.01);
+  EXPECT_DOUBLE_EQ(fineCells(CloudStream(strip), Eigen::Vector3d::Zero(), lattice).frame.cell,
+                   0.01);
 }
 
 StripCells stripWith(double depth, int row, int col, int rows, int cols) {
@@ -150,24 +151,37 @@ TEST(Ground, NobodyKnowsItUnderAClosedCanopy) {
 }
 
 /// Two strips of one field, the second of which is laid `off`.
-std::vector<StripCells> overlapping(const Eigen::Vector3d& off, const Lattice& lattice) {
-  const auto bumps = [](double x, double y) {
-    return 0.1 * std::sin(7.0 * x + 2.0 * std::sin(3.0 * y)) * std::cos(5.0 * y + x);
-  };
-  const Cloud first = groundCloud({1.0, 1.0}, {5.0, 3.0}, 0.01, bumps);
-  Cloud second = groundCloud({1.0, 2.0}, {5.0, 4.0}, 0.01, bumps);
-  for (Eigen::Vector3f& p : second.xyz) p += off.cast<float>();
-  const Eigen::Vector3d stay = Eigen::Vector3d::Zero();
-  return {stripCells(CloudStream(first), stay, lattice, 0.2),
-          stripCells(CloudStream(second), stay, lattice, 0.2)};
-}
+class TwoStrips {
+ public:
+  explicit TwoStrips(const Eigen::Vector3d& off) {
+    const auto bumps = [](double x, double y) {
+      return 0.1 * std::sin(7.0 * x + 2.0 * std::sin(3.0 * y)) * std::cos(5.0 * y + x);
+    };
+    clouds_.push_back(groundCloud({1.0, 1.0}, {5.0, 3.0}, 0.01, bumps));
+    clouds_.push_back(groundCloud({1.0, 2.0}, {5.0, 4.0}, 0.01, bumps));
+    for (Eigen::Vector3f& p : clouds_[1].xyz) p += off.cast<float>();
+    for (const Cloud& cloud : clouds_) {
+      cells_.push_back(stripCells(CloudStream(cloud), stay_, lattice_, 0.2));
+    }
+  }
+  std::vector<Disagreement> compared(const std::vector<StripErrors>& errors) const {
+    const auto fine = [&](std::size_t i) {
+      return fineCells(CloudStream(clouds_[i]), stay_, lattice_);
+    };
+    return compareStrips({&cells_[0], &cells_[1]}, {lattice_.factor, fine}, errors);
+  }
+
+ private:
+  const Eigen::Vector3d stay_ = Eigen::Vector3d::Zero();
+  const Lattice lattice_{{Eigen::Vector2d::Zero(), 0.05, 120, 120}, 5};
+  std::vector<Cloud> clouds_;
+  std::vector<StripCells> cells_;
+};
 
 TEST(Adjustment, FindsHowFarStripsLieApartAndMovesTheWorse) {
-  const Lattice lattice{{Eigen::Vector2d::Zero(), 0.05, 120, 120}, 5};
   const Eigen::Vector3d off(0.032, -0.017, 0.011);
-  const std::vector<StripCells> cells = overlapping(off, lattice);
   const std::vector<StripErrors> errors{{0.005, 0.005}, {0.04, 0.02}};
-  const auto found = compareStrips({&cells[0], &cells[1]}, errors);
+  const auto found = TwoStrips(off).compared(errors);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR((found[0].offset - off).norm(), 0.0, 0.004);
   EXPECT_TRUE(found[0].plausible());
@@ -177,10 +191,8 @@ TEST(Adjustment, FindsHowFarStripsLieApartAndMovesTheWorse) {
 }
 
 TEST(Adjustment, WhatNoErrorExplainsIsSaidAndNotSpreadOut) {
-  const Lattice lattice{{Eigen::Vector2d::Zero(), 0.05, 120, 120}, 5};
-  const std::vector<StripCells> cells = overlapping({0.2, 0.0, 0.0}, lattice);
   const std::vector<StripErrors> errors{{0.01, 0.01}, {0.01, 0.01}};
-  const auto found = compareStrips({&cells[0], &cells[1]}, errors);
+  const auto found = TwoStrips({0.2, 0.0, 0.0}).compared(errors);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_FALSE(found[0].plausible());
   EXPECT_TRUE(adjustedShifts(found, errors)[1].isZero());

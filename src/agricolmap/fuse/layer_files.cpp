@@ -82,8 +82,8 @@ struct FineLayers {
   Raster<std::uint8_t> mask;
 };
 
-FineLayers fineLayers(const SharedMap& map, const FusedStrip& strip, bool match_colours) {
-  const map::GridMap& own = strip.cells.fine;
+FineLayers fineLayers(const SharedMap& map, const FusedStrip& strip, const map::GridMap& own,
+                      bool match_colours) {
   const Tone tone = match_colours ? strip.tone : Tone{};
   FineLayers fine;
   for (Raster<float>* raster :
@@ -115,12 +115,15 @@ FineLayers fineLayers(const SharedMap& map, const FusedStrip& strip, bool match_
 }  // namespace
 
 std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
-                                     const FuseOptions& options, const Crs& crs) {
+                                     const StripPoints& points, const FuseOptions& options,
+                                     const Crs& crs) {
   std::vector<std::string> names = writeWhole(place, map.layers, crs);
-  for (const FusedStrip& strip : map.strips) {
+  for (std::size_t i = 0; i < map.strips.size(); ++i) {
+    const FusedStrip& strip = map.strips[i];
     if (strip.owned_area <= 0.0) continue;
-    const FineLayers fine = fineLayers(map, strip, options.match_colours);
-    Files files(place, strip.cells.fine.frame, map.layers.origin, crs);
+    const map::GridMap own = fineMap(map, i, *points[i]);
+    const FineLayers fine = fineLayers(map, strip, own, options.match_colours);
+    Files files(place, own.frame, map.layers.origin, crs);
     // A constant per file moves all of its bands, so those above sea level have one of their own.
     files.floats("fine/" + strip.id + "_heights.tif",
                  {{&fine.surface, "surface", "m"}, {&fine.ground, "ground", "m"}},

@@ -13,11 +13,15 @@ namespace agricolmap::fuse {
 /// Where the file of that name, relative to the map's folder, is to be written.
 using Place = std::function<io::OutputPath(const std::string& name)>;
 
+/// The points of the map's strips, in their order there.
+using StripPoints = std::vector<const PointStream*>;
+
 /// Writes `layers/NAME.tif` over the whole field and, where strips own cells, in the strips'
 /// cells, `fine/STRIP_heights.tif` (surface, ground), `fine/STRIP.tif` (plant height, Excess Green,
 /// cover, density) and `fine/STRIP_colour.tif`. Returns their names. Throws OutputError, and
 /// UsageError in a build without GDAL.
 std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
-                                     const FuseOptions& options, const Crs& crs);
+                                     const StripPoints& points, const FuseOptions& options,
+                                     const Crs& crs);
 
 }  // namespace agricolmap::fuse

@@ -58,6 +58,7 @@ Lattice latticeOf(const PointStream& fixed, const std::vector<StripInput>& strip
   const Eigen::Vector3d origin = fixed.facts().origin;
   Extent all = extentOf(fixed, origin);
   double spacing = std::numeric_limits<double>::infinity();
+  std::vector<map::Box2> boxes;
   for (const StripInput& strip : strips) {
     const Extent own = extentOf(*strip.points, origin);
     if (!all.box.intersects(own.box)) {
@@ -65,8 +66,9 @@ Lattice latticeOf(const PointStream& fixed, const std::vector<StripInput>& strip
           "{}: does not touch the fixed cloud; was it registered to another one?", strip.id));
     }
     spacing = std::min(spacing, own.spacing);
+    boxes.push_back(own.box);
   }
-  for (const StripInput& strip : strips) all.box.extend(extentOf(*strip.points, origin).box);
+  for (const map::Box2& box : boxes) all.box.extend(box);
   double cell = options.cell > 0.0 ? options.cell : cellFor(all.spacing);
   const double area = all.box.volume();
   if (area / (cell * cell) > kMostCells) {
@@ -102,7 +104,11 @@ void adjust(const std::vector<StripInput>& inputs, const Eigen::Vector3d& origin
             const FuseOptions& options, SharedMap& map) {
   std::vector<StripErrors> errors;
   for (const FusedStrip& strip : map.strips) errors.push_back(strip.errors);
-  map.overlaps = compareStrips(cellsOf(map.strips), errors);
+  const FineStrips fine{map.lattice.factor, [&](std::size_t i) {
+                          return fineCells(*inputs[i].points, shiftOf(*inputs[i].points, origin),
+                                           map.lattice);
+                        }};
+  map.overlaps = compareStrips(cellsOf(map.strips), fine, errors);
   for (const Disagreement& pair : map.overlaps) {
     if (pair.plausible()) continue;
     map.warnings.push_back(fmt::format(
@@ -260,6 +266,11 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
     map.layers.plant_height[i] -= map.layers.ground[i];
   }
   return map;
+}
+
+map::GridMap fineMap(const SharedMap& map, std::size_t strip, const PointStream& points) {
+  return fineCells(points, shiftOf(points, map.layers.origin) + map.strips[strip].moved,
+                   map.lattice);
 }
 
 }  // namespace agricolmap::fuse

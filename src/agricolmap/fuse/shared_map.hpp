@@ -63,4 +63,7 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
                    std::vector<StripInput> strips, const FuseOptions& options,
                    const StepListener& on_step = {});
 
+/// Strip number `strip` in the strips' cells, where it lies in the map.
+map::GridMap fineMap(const SharedMap& map, std::size_t strip, const PointStream& points);
+
 }  // namespace agricolmap::fuse

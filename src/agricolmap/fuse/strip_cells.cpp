@@ -89,19 +89,23 @@ Raster<float> depthOf(const Mask& seen, double cell) {
 
 }  // namespace
 
-StripCells stripCells(const PointStream& cloud, const Eigen::Vector3d& shift,
-                      const Lattice& lattice, double least_seen) {
-  const auto [window, begin] = windowOf(cloud, shift, lattice.frame);
-  GridFrame fine = window;
+map::GridMap fineCells(const PointStream& cloud, const Eigen::Vector3d& shift,
+                       const Lattice& lattice) {
+  GridFrame fine = windowOf(cloud, shift, lattice.frame).first;
   fine.cell /= lattice.factor;
   fine.rows *= lattice.factor;
   fine.cols *= lattice.factor;
+  return surfaceMap(cloud, shift, fine);
+}
+
+StripCells stripCells(const PointStream& cloud, const Eigen::Vector3d& shift,
+                      const Lattice& lattice, double least_seen) {
+  const Eigen::Vector2i begin = windowOf(cloud, shift, lattice.frame).second;
   StripCells cells;
   cells.row = begin[0];
   cells.col = begin[1];
-  cells.fine = surfaceMap(cloud, shift, fine);
-  cells.coarse = coarsened(cells.fine, lattice.factor);
-  cells.depth = depthOf(seenCells(cells.coarse, least_seen), window.cell);
+  cells.coarse = coarsened(fineCells(cloud, shift, lattice), lattice.factor);
+  cells.depth = depthOf(seenCells(cells.coarse, least_seen), lattice.frame.cell);
   return cells;
 }
 

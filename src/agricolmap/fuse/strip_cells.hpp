@@ -17,8 +17,7 @@ struct Lattice {
 struct StripCells {
   int row = 0;  ///< of the map's frame, where the window begins
   int col = 0;
-  map::GridMap fine;    ///< surface in the strips' cells
-  map::GridMap coarse;  ///< the same in the map's
+  map::GridMap coarse;  ///< means over the strips' cells in it
   /// How far from what the strip did not see the middle of a cell of the map lies [m]; 0: not seen.
   Raster<float> depth;
 
@@ -33,5 +32,10 @@ struct StripCells {
 /// unseen, noise at the border is dropped.
 StripCells stripCells(const PointStream& cloud, const Eigen::Vector3d& shift,
                       const Lattice& lattice, double least_seen);
+
+/// The same window in the strips' cells: made when it is asked for, as of a hundred strips it would
+/// fill the memory.
+map::GridMap fineCells(const PointStream& cloud, const Eigen::Vector3d& shift,
+                       const Lattice& lattice);
 
 }  // namespace agricolmap::fuse

@@ -146,47 +146,49 @@ void drawScale(PictureCanvas& canvas, const PixelRect& under, double most) {
               {12.0, palette::kFaint, false, Align::kLeft});
 }
 
-/// Where a strip's long side meets the drone's cells: the middle of the first strip's border.
-std::optional<Eigen::Vector2d> placeOnBorder(const fuse::SharedMap& map) {
-  for (const fuse::FusedStrip& strip : map.strips) {
-    const fuse::StripCells& cells = strip.cells;
+/// A place on a strip's border.
+struct Border {
+  std::size_t strip = 0;
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+};
+
+/// Where a strip's western side meets the drone's cells, half-way up the first strip that has such
+/// a place.
+std::optional<Border> borderOf(const fuse::SharedMap& map) {
+  for (std::size_t i = 0; i < map.strips.size(); ++i) {
+    const fuse::StripCells& cells = map.strips[i].cells;
     const int row = cells.row + cells.depth.rows() / 2;
     for (int c = 1; c < cells.depth.cols(); ++c) {
       const int col = cells.col + c;
-      if (map.layers.source(row, col) == strip.code &&
+      if (map.layers.source(row, col) == map.strips[i].code &&
           map.layers.source(row, col - 1) == fuse::kFixedSource) {
-        return map.layers.frame.centre(row, col);
+        return Border{i, map.layers.frame.centre(row, col)};
       }
     }
   }
   return std::nullopt;
 }
 
-/// Strips in their own cells over the map's.
-void paintFine(PictureCanvas& canvas, const View& view, const fuse::SharedMap& map) {
+/// A strip in its own cells over the map's.
+void paintFine(PictureCanvas& canvas, const View& view, const fuse::SharedMap& map,
+               const fuse::FusedStrip& strip, const map::GridMap& fine) {
   paintColours(canvas, view, map.layers);
-  for (const fuse::FusedStrip& strip : map.strips) {
-    const map::GridMap& fine = strip.cells.fine;
-    canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
-      for (int i = 0; i < view.rect.width; ++i) {
-        const Eigen::Vector2d cell =
-            fine.frame.cellOf(view.ground({view.rect.x + i + 0.5, y + 0.5}));
-        const int row = static_cast<int>(std::lround(cell.y()));
-        const int col = static_cast<int>(std::lround(cell.x()));
-        if (row < 0 || col < 0 || row >= fine.frame.rows || col >= fine.frame.cols ||
-            !fine.valid(row, col)) {
-          continue;
-        }
-        const int factor = map.lattice.factor;
-        if (map.layers.source(strip.cells.row + row / factor, strip.cells.col + col / factor) !=
-            strip.code) {
-          continue;
-        }
-        const Rgb colour = strip.tone(fine.colour(row, col));
-        out[i] = packPixel(colour.r, colour.g, colour.b);
+  const int factor = map.lattice.factor;
+  canvas.paint(view.rect, [&](int y, std::uint32_t* out) {
+    for (int i = 0; i < view.rect.width; ++i) {
+      const Eigen::Vector2d cell = fine.frame.cellOf(view.ground({view.rect.x + i + 0.5, y + 0.5}));
+      const int row = static_cast<int>(std::lround(cell.y()));
+      const int col = static_cast<int>(std::lround(cell.x()));
+      const bool inside = row >= 0 && col >= 0 && row < fine.frame.rows && col < fine.frame.cols;
+      if (!inside || !fine.valid(row, col)) continue;
+      if (map.layers.source(strip.cells.row + row / factor, strip.cells.col + col / factor) !=
+          strip.code) {
+        continue;
       }
-    });
-  }
+      const Rgb colour = strip.tone(fine.colour(row, col));
+      out[i] = packPixel(colour.r, colour.g, colour.b);
+    }
+  });
 }
 
 struct Layout {
@@ -219,9 +221,9 @@ void drawTitle(PictureCanvas& canvas, const PixelRect& panel, const std::string&
 }  // namespace
 
 void writeSharedMapPicture(const io::OutputPath& path, const fuse::SharedMap& map,
-                           const std::string& name) {
+                           const std::vector<const PointStream*>& points, const std::string& name) {
   const fuse::Layers& layers = map.layers;
-  const auto near = placeOnBorder(map);
+  const std::optional<Border> near = borderOf(map);
   Layout layout = layoutOf(layers, near.has_value());
   Page page(
       layout.height, name,
@@ -252,11 +254,12 @@ void writeSharedMapPicture(const io::OutputPath& path, const fuse::SharedMap& ma
   }
   drawScale(canvas, layout.heights, most);
   if (near) {
-    const GroundRect around{*near,
+    const GroundRect around{near->place,
                             Eigen::Matrix2d::Identity(),
                             {kZoom * layout.near_colours.width / kZoomHeight, kZoom}};
     const View colours = fitView(layout.near_colours, around);
-    paintFine(canvas, colours, map);
+    paintFine(canvas, colours, map, map.strips[near->strip],
+              fuse::fineMap(map, near->strip, *points[near->strip]));
     drawScaleBar(canvas, colours);
     drawTitle(canvas, colours.rect, "A strip's border, in the strip's own cells");
     const View heights = fitView(layout.near_heights, around);

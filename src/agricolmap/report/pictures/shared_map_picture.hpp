@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "agricolmap/fuse/shared_map.hpp"
 #include "agricolmap/io/output/output_path.hpp"
@@ -9,9 +10,10 @@
 namespace agricolmap::report {
 
 /// Draws colours and plant heights of the whole field, strips outlined, and beneath a place on a
-/// strip's border in the strips' own cells. `name`: of the map. Throws OutputError, and UsageError
+/// strip's border in the strips' own cells. `points`: of the
+/// strips. `name`: of the map. Throws OutputError, and UsageError
 /// in a build that cannot draw.
 void writeSharedMapPicture(const io::OutputPath& path, const fuse::SharedMap& map,
-                           const std::string& name);
+                           const std::vector<const PointStream*>& points, const std::string& name);
 
 }  // namespace agricolmap::report

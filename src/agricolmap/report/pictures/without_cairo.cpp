@@ -17,6 +17,7 @@ std::vector<std::string> writePictures(const io::OutputPath& /*dir*/,
 }
 
 void writeSharedMapPicture(const io::OutputPath& /*path*/, const fuse::SharedMap& /*map*/,
+                           const std::vector<const PointStream*>& /*points*/,
                            const std::string& /*name*/) {
   throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
 }
