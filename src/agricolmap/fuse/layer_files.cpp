@@ -56,12 +56,15 @@ class Files {
   std::vector<std::string> names_;
 };
 
-std::vector<std::string> writeWhole(const Place& place, const Layers& layers, const Crs& crs) {
+std::vector<std::string> writeWhole(const Place& place, const SharedMap& map, const Crs& crs) {
+  const Layers& layers = map.layers;
   Files files(place, layers.frame, layers.origin, crs);
-  const double up = layers.origin.z();
-  files.floats("layers/surface.tif", {{&layers.surface, "surface", "m"}}, up);
-  files.floats("layers/ground.tif", {{&layers.ground, "ground", "m"}}, up);
-  files.floats("layers/plant_height.tif", {{&layers.plant_height, "plant height", "m"}});
+  if (!map.flat) {
+    const double up = layers.origin.z();
+    files.floats("layers/surface.tif", {{&layers.surface, "surface", "m"}}, up);
+    files.floats("layers/ground.tif", {{&layers.ground, "ground", "m"}}, up);
+    files.floats("layers/plant_height.tif", {{&layers.plant_height, "plant height", "m"}});
+  }
   files.floats("layers/exg.tif", {{&layers.exg, "excess green", ""}});
   files.floats("layers/cover.tif", {{&layers.cover, "vegetation cover", ""}});
   files.floats("layers/density.tif", {{&layers.density, "point density", "1/m2"}});
@@ -102,10 +105,11 @@ FineLayers fineLayers(const SharedMap& map, const FusedStrip& strip, const map::
       fine.surface[i] = own.height[i];
       fine.ground[i] = map.layers.ground(row, col);
       fine.plant_height[i] = own.height[i] - map.layers.ground(row, col);
-      fine.exg[i] = tone.exg(own.exg[i]);
       fine.cover[i] = strip.greenness.cover(own.exg[i]);
       fine.density[i] = own.weight[i] / area;
       fine.colour[i] = tone(own.colour[i]);
+      fine.exg[i] =
+          match_colours ? map::excessGreen(fine.colour[i], map::ExgKind::kChromatic) : own.exg[i];
       fine.mask[i] = 255;
     }
   }
@@ -117,7 +121,7 @@ FineLayers fineLayers(const SharedMap& map, const FusedStrip& strip, const map::
 std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
                                      const StripPoints& points, const FuseOptions& options,
                                      const Crs& crs) {
-  std::vector<std::string> names = writeWhole(place, map.layers, crs);
+  std::vector<std::string> names = writeWhole(place, map, crs);
   for (std::size_t i = 0; i < map.strips.size(); ++i) {
     const FusedStrip& strip = map.strips[i];
     if (strip.owned_area <= 0.0) continue;
@@ -125,9 +129,11 @@ std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
     const FineLayers fine = fineLayers(map, strip, own, options.match_colours);
     Files files(place, own.frame, map.layers.origin, crs);
     // A constant per file moves all of its bands, so those above sea level have one of their own.
-    files.floats("fine/" + strip.id + "_heights.tif",
-                 {{&fine.surface, "surface", "m"}, {&fine.ground, "ground", "m"}},
-                 map.layers.origin.z());
+    if (!map.flat && !strip.flat) {
+      files.floats("fine/" + strip.id + "_heights.tif",
+                   {{&fine.surface, "surface", "m"}, {&fine.ground, "ground", "m"}},
+                   map.layers.origin.z());
+    }
     files.floats("fine/" + strip.id + ".tif", {{&fine.plant_height, "plant height", "m"},
                                                {&fine.exg, "excess green", ""},
                                                {&fine.cover, "vegetation cover", ""},

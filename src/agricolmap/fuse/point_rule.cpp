@@ -23,11 +23,14 @@ std::optional<FusedPoint> PointRule::ofFixed(const Eigen::Vector3f& place, Rgb c
 std::optional<FusedPoint> PointRule::ofStrip(std::size_t index, const Eigen::Vector3f& place,
                                              Rgb colour) const {
   const FusedStrip& strip = map_.strips[index];
-  const Eigen::Vector3f moved = place + strip.moved.cast<float>();
+  Eigen::Vector3f moved = place + strip.moved.cast<float>();
   const auto cell = cellOf(moved);
   if (!cell || map_.layers.source[*cell] != strip.code) return std::nullopt;
+  if (strip.flat && !std::isnan(map_.layers.surface[*cell])) {
+    moved.z() = map_.layers.surface[*cell];
+  }
   return FusedPoint{moved, options_.match_colours ? strip.tone(colour) : colour,
-                    static_cast<float>(strip.moved.z()), static_cast<float>(strip.errors.plane),
+                    moved.z() - place.z(), static_cast<float>(strip.errors.plane),
                     static_cast<float>(strip.errors.height)};
 }
 

@@ -83,6 +83,15 @@ Lattice latticeOf(const PointStream& fixed, const std::vector<StripInput>& strip
   return {frameOf(all.box, cell), std::max(1, factor)};
 }
 
+/// Those that have heights, of a map that has them.
+std::vector<const StripCells*> raisedOf(const SharedMap& map) {
+  std::vector<const StripCells*> cells;
+  for (const FusedStrip& strip : map.strips) {
+    if (!strip.flat && !map.flat) cells.push_back(&strip.cells);
+  }
+  return cells;
+}
+
 std::vector<const StripCells*> cellsOf(const std::vector<FusedStrip>& strips) {
   std::vector<const StripCells*> cells;
   for (const FusedStrip& strip : strips) cells.push_back(&strip.cells);
@@ -94,7 +103,7 @@ std::vector<const StripCells*> measuredOf(const std::vector<StripInput>& inputs,
                                           const std::vector<FusedStrip>& strips) {
   std::vector<const StripCells*> cells;
   for (std::size_t i = 0; i < strips.size(); ++i) {
-    if (!inputs[i].heights_limited) cells.push_back(&strips[i].cells);
+    if (!inputs[i].heights_limited && !strips[i].flat) cells.push_back(&strips[i].cells);
   }
   return cells;
 }
@@ -154,7 +163,7 @@ void takeFixed(const FixedHeights& fixed, std::int32_t date, const SharedMap& ma
   parallelFor(
       layers.source.size(),
       [&](std::size_t i) {
-        if (layers.source[i] != kFixedSource) return;
+        if (!fixed.map.valid(i)) return;
         layers.surface[i] = fixed.map.height[i] + map.correction[i];
         layers.exg[i] = fixed.map.exg[i];
         layers.cover[i] = fixed.cover[i];
@@ -168,7 +177,7 @@ void takeFixed(const FixedHeights& fixed, std::int32_t date, const SharedMap& ma
       1U << 14);
 }
 
-void takeStrip(FusedStrip& strip, bool coloured, Layers& layers) {
+void takeStrip(FusedStrip& strip, bool match_colours, Layers& layers) {
   const double area = layers.frame.cell * layers.frame.cell;
   const StripCells& cells = strip.cells;
   for (int r = 0; r < cells.depth.rows(); ++r) {
@@ -178,15 +187,18 @@ void takeStrip(FusedStrip& strip, bool coloured, Layers& layers) {
       const std::size_t i = layers.source.index(cells.row + r, cells.col + c);
       if (layers.source[i] != strip.code) continue;
       strip.owned_area += area;
-      layers.surface[i] = cells.coarse.height(r, c);
+      if (!strip.flat) layers.surface[i] = cells.coarse.height(r, c);
       layers.cover[i] = strip.greenness.cover(cells.coarse.exg(r, c));
-      layers.exg[i] = coloured ? strip.tone.exg(cells.coarse.exg(r, c)) : cells.coarse.exg(r, c);
-      layers.colour[i] =
-          coloured ? strip.tone(cells.coarse.colour(r, c)) : cells.coarse.colour(r, c);
+      layers.exg[i] = cells.coarse.exg(r, c);
+      layers.colour[i] = cells.coarse.colour(r, c);
+      if (match_colours) {
+        layers.colour[i] = strip.tone(layers.colour[i]);
+        layers.exg[i] = map::excessGreen(layers.colour[i], map::ExgKind::kChromatic);
+      }
       layers.density[i] = cells.coarse.weight(r, c) / static_cast<float>(area);
       layers.date[i] = strip.date;
       layers.plane_error[i] = static_cast<float>(strip.errors.plane);
-      layers.height_error[i] = static_cast<float>(strip.errors.height);
+      if (!strip.flat) layers.height_error[i] = static_cast<float>(strip.errors.height);
     }
   }
 }
@@ -223,6 +235,7 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
   map::GridMap drone = surfaceMap(fixed, Eigen::Vector3d::Zero(), map.lattice.frame);
   fillBetween(drone);
   map.fixed_greenness = greennessOf(drone);
+  map.flat = !map::hasRelief(drone);
   step("strips");
   for (const StripInput& input : inputs) {
     FusedStrip& strip = map.strips.emplace_back();
@@ -236,7 +249,13 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
   adjust(inputs, origin, options, map);
   for (FusedStrip& strip : map.strips) {
     strip.greenness = greennessOf(strip.cells.coarse);
-    strip.tone = toneOf(strip.cells, strip.greenness, drone, map.fixed_greenness);
+    const bool same_day = strip.date == 0 || fixed_date == 0 || strip.date == fixed_date;
+    strip.tone = toneOf(strip.cells, strip.greenness, drone, map.fixed_greenness, same_day);
+    strip.flat = !map::hasRelief(strip.cells.coarse);
+    if (strip.flat && !map.flat) {
+      map.warnings.push_back(strip.id +
+                             ": has no heights; those of its cells are the fixed cloud's");
+    }
   }
 
   step("heights");
@@ -247,8 +266,9 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
   }
   const Raster<float> drone_ground = groundOf(map.lattice.frame, surface, cover);
   const FixedHeights heights{drone, drone_ground, cover};
-  if (options.correct_heights) map.bias = heightBiasOf(heights, measuredOf(inputs, map.strips));
-  map.correction = heightCorrection(heights, map.bias, cellsOf(map.strips), options.seam);
+  if (options.correct_heights && !map.flat)
+    map.bias = heightBiasOf(heights, measuredOf(inputs, map.strips));
+  map.correction = heightCorrection(heights, map.bias, raisedOf(map), options.seam);
 
   step("layers");
   std::vector<Claim> claims;

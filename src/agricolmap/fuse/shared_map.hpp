@@ -37,6 +37,7 @@ struct FusedStrip {
   StripCells cells;
   Greenness greenness;
   Tone tone;
+  bool flat = false;                                ///< has no heights
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< by the adjustment [m]
   double seen_area = 0.0;                           ///< [m²]
   double owned_area = 0.0;                          ///< what it has in the map [m²]
@@ -48,6 +49,7 @@ struct SharedMap {
   Raster<float> correction;  ///< of the fixed cloud's heights [m]
   std::optional<HeightBias> bias;
   Greenness fixed_greenness;
+  bool flat = false;  ///< the fixed cloud has no heights, so the layers of heights mean nothing
   std::vector<FusedStrip> strips;
   std::vector<Disagreement> overlaps;
   std::vector<std::string> warnings;

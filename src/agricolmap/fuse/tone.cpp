@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "agricolmap/fuse/strip_cells.hpp"
 
 namespace agricolmap::fuse {
 namespace {
 
-/// Colours that differ less than this between soil and plants say little of a gain.
-constexpr double kSpread = 15.0;
 constexpr double kLeastCells = 50.0;
+constexpr double kMostGain = 2.0;
 
-struct Mean {
+/// Colours of cells that both show.
+struct Means {
   double cells = 0.0;
   std::array<double, 3> own{};
   std::array<double, 3> target{};
@@ -26,30 +27,31 @@ struct Mean {
       target[c] += to[c];
     }
   }
-  double ownMean(std::size_t c) const { return own[c] / cells; }
-  double targetMean(std::size_t c) const { return target[c] / cells; }
+  bool enough() const { return cells >= kLeastCells; }
 };
 
-/// Over the cells that both show: all, and soil and plants apart.
-struct Means {
-  Mean all, soil, plants;
-  bool parted() const { return std::min(soil.cells, plants.cells) >= kLeastCells; }
+/// All cells, and those of which both say the same.
+struct Kinds {
+  Means all, soil, plants;
 };
 
-Means meansOf(const StripCells& strip, const Greenness& own, const map::GridMap& fixed) {
-  Means means;
+Kinds kindsOf(const StripCells& strip, const Greenness& own, const map::GridMap& fixed,
+              const Greenness& target) {
+  constexpr float kPlant = 0.8F, kSoil = 0.2F;
+  Kinds kinds;
   for (int r = 0; r < strip.depth.rows(); ++r) {
     for (int c = 0; c < strip.depth.cols(); ++c) {
       const int row = strip.row + r, col = strip.col + c;
       if (strip.depth(r, c) <= 0.0F || !fixed.valid(row, col)) continue;
       const Rgb from = strip.coarse.colour(r, c), to = fixed.colour(row, col);
-      means.all.add(from, to);
+      kinds.all.add(from, to);
       const float cover = own.cover(strip.coarse.exg(r, c));
-      if (cover >= 0.8F) means.plants.add(from, to);
-      if (cover <= 0.2F) means.soil.add(from, to);
+      const float other = target.cover(fixed.exg(row, col));
+      if (std::min(cover, other) >= kPlant) kinds.plants.add(from, to);
+      if (std::max(cover, other) <= kSoil) kinds.soil.add(from, to);
     }
   }
-  return means;
+  return kinds;
 }
 
 }  // namespace
@@ -81,36 +83,31 @@ Greenness greennessOf(const map::GridMap& map) { return {map::vegetationThreshol
 
 Rgb Tone::operator()(Rgb colour) const {
   const auto moved = [&](std::size_t c, std::uint8_t value) {
-    const float to = std::fma(gain[c], static_cast<float>(value), offset[c]);
+    const float to = gain[c] * static_cast<float>(value);
     return static_cast<std::uint8_t>(std::lround(std::clamp(to, 0.0F, 255.0F)));
   };
   return {moved(0, colour.r), moved(1, colour.g), moved(2, colour.b)};
 }
 
 Tone toneOf(const StripCells& strip, const Greenness& own, const map::GridMap& fixed,
-            const Greenness& target) {
-  const Means means = meansOf(strip, own, fixed);
+            const Greenness& target, bool same_day) {
+  const Kinds kinds = kindsOf(strip, own, fixed, target);
+  std::vector<const Means*> used;
+  if (kinds.soil.enough()) used.push_back(&kinds.soil);
+  if (kinds.plants.enough() && same_day) used.push_back(&kinds.plants);
+  if (used.empty()) used.push_back(&kinds.all);
   Tone tone;
-  if (means.all.cells < kLeastCells) return tone;
+  if (!used.front()->enough()) return tone;
   for (std::size_t c = 0; c < 3; ++c) {
-    double gain = 1.0, from = means.all.ownMean(c), to = means.all.targetMean(c);
-    if (means.parted()) {
-      const double own_step = means.plants.ownMean(c) - means.soil.ownMean(c);
-      const double step = means.plants.targetMean(c) - means.soil.targetMean(c);
-      constexpr double kPrior = kSpread * kSpread;
-      gain = (own_step * step + kPrior) / (own_step * own_step + kPrior);
-      from = 0.5 * (means.plants.ownMean(c) + means.soil.ownMean(c));
-      to = 0.5 * (means.plants.targetMean(c) + means.soil.targetMean(c));
+    double products = 0.0, squares = 0.0;  // soil and plants weigh alike
+    for (const Means* means : used) {
+      const double from = means->own[c] / means->cells;
+      products += from * means->target[c] / means->cells;
+      squares += from * from;
     }
-    tone.gain[c] = static_cast<float>(gain);
-    tone.offset[c] = static_cast<float>(to - gain * from);
-  }
-  if (own.found.status == map::VegetationStatus::kOk &&
-      target.found.status == map::VegetationStatus::kOk) {
-    const double gain = (target.found.vegetation_mean - target.found.soil_mean) /
-                        (own.found.vegetation_mean - own.found.soil_mean);
-    tone.exg_gain = static_cast<float>(gain);
-    tone.exg_offset = static_cast<float>(target.found.soil_mean - gain * own.found.soil_mean);
+    if (squares > 0.0) {
+      tone.gain[c] = static_cast<float>(std::clamp(products / squares, 1.0 / kMostGain, kMostGain));
+    }
   }
   return tone;
 }

@@ -22,21 +22,17 @@ struct Greenness {
 };
 Greenness greennessOf(const map::GridMap& map);
 
-/// A line per channel, and one for Excess Green.
+/// A factor per channel: what exposure and white balance differ by.
 struct Tone {
   std::array<float, 3> gain{1.0F, 1.0F, 1.0F};
-  std::array<float, 3> offset{};
-  float exg_gain = 1.0F;
-  float exg_offset = 0.0F;
 
   Rgb operator()(Rgb colour) const;
-  float exg(float own) const { return own * exg_gain + exg_offset; }
 };
 
-/// Brings a strip's colours to those of the fixed map: soil to soil and plants to plants, by their
-/// means over the cells that both show; gains near 1 where the two hardly differ. Where a map does
-/// not tell plants from soil, brightness alone.
+/// Brings a strip's colours to those of the fixed map, by the cells that both call soil, and those
+/// that both call plants; `same_day` false: by the soil alone, as plants change. Where the maps do
+/// not tell plants from soil, by all cells that both show. Factors from 1/2 to 2.
 Tone toneOf(const StripCells& strip, const Greenness& own, const map::GridMap& fixed,
-            const Greenness& target);
+            const Greenness& target, bool same_day);
 
 }  // namespace agricolmap::fuse

@@ -49,7 +49,7 @@ Json stripJson(const MapSource& source, const fuse::FusedStrip& strip) {
   json["seen_m2"] = number(strip.seen_area);
   json["owned_m2"] = number(strip.owned_area);
   json["colour_gain"] = strip.tone.gain;
-  json["colour_offset"] = strip.tone.offset;
+  json["flat"] = strip.flat;
   return json;
 }
 

@@ -77,12 +77,31 @@ void paintColours(PictureCanvas& canvas, const View& view, const fuse::Layers& l
   });
 }
 
-void paintHeights(PictureCanvas& canvas, const View& view, const fuse::Layers& layers,
-                  double most) {
+/// What the second panel shows: plant heights or, of maps without any, greenness.
+struct Values {
+  const Raster<float>& values;
+  double low = 0.0;
+  double high = 1.0;
+  std::string title;
+  std::string legend;
+};
+
+Values valuesOf(const fuse::SharedMap& map) {
+  if (map.flat) {
+    constexpr double kGreen = 0.4;
+    return {map.layers.exg, 0.0, kGreen, "Greenness", "chromatic Excess Green, 0 to 0.4"};
+  }
+  const double most = tallest(map.layers);
+  return {map.layers.plant_height, 0.0, most, "Plant height",
+          fmt::format("0 to {:.2f} m above the ground; hatched: no ground seen near", most)};
+}
+
+void paintValues(PictureCanvas& canvas, const View& view, const fuse::Layers& layers,
+                 const Values& shown) {
   paintCells(canvas, view, layers.frame, [&](int row, int col) -> std::optional<std::uint32_t> {
-    const float height = layers.plant_height(row, col);
-    if (std::isnan(height)) return std::nullopt;
-    return heightColour(static_cast<double>(height) / most);
+    const double value = shown.values(row, col);
+    if (std::isnan(value)) return std::nullopt;
+    return heightColour((value - shown.low) / (shown.high - shown.low));
   });
 }
 
@@ -134,15 +153,14 @@ void drawNames(PictureCanvas& canvas, const View& view, const fuse::SharedMap& m
   }
 }
 
-void drawScale(PictureCanvas& canvas, const PixelRect& under, double most) {
+void drawScale(PictureCanvas& canvas, const PixelRect& under, const Values& shown) {
   constexpr int kWidth = 200, kHeight = 12;
   const PixelRect bar{under.x, under.y + under.height + 10, kWidth, kHeight};
   canvas.paint(bar, [&](int, std::uint32_t* out) {
     for (int i = 0; i < bar.width; ++i) out[i] = heightColour((i + 0.5) / bar.width);
   });
   canvas.frame(bar, {1.0, hexColour(0x8a9099), {}});
-  canvas.text({bar.x + bar.width + 8.0, bar.y + 11.0},
-              fmt::format("0 to {:.2f} m above the ground; hatched: no ground seen near", most),
+  canvas.text({bar.x + bar.width + 8.0, bar.y + 11.0}, shown.legend,
               {12.0, palette::kFaint, false, Align::kLeft});
 }
 
@@ -238,11 +256,11 @@ void writeSharedMapPicture(const io::OutputPath& path, const fuse::SharedMap& ma
   const Eigen::Vector2d half =
       0.5 * layers.frame.cell * Eigen::Vector2d(layers.frame.cols, layers.frame.rows);
   const GroundRect whole{layers.frame.corner + half, Eigen::Matrix2d::Identity(), half};
-  const double most = tallest(layers);
+  const Values shown = valuesOf(map);
   for (const bool heights : {false, true}) {
     const View view = fitView(heights ? layout.heights : layout.colours, whole);
     if (heights) {
-      paintHeights(canvas, view, layers, most);
+      paintValues(canvas, view, layers, shown);
     } else {
       paintColours(canvas, view, layers);
     }
@@ -250,9 +268,9 @@ void writeSharedMapPicture(const io::OutputPath& path, const fuse::SharedMap& ma
     if (!heights) drawNames(canvas, view, map);
     drawScaleBar(canvas, view);
     drawNorth(canvas, view);
-    drawTitle(canvas, view.rect, heights ? "Plant height" : "Colour, and the strips' cells");
+    drawTitle(canvas, view.rect, heights ? shown.title : "Colour, and the strips' cells");
   }
-  drawScale(canvas, layout.heights, most);
+  drawScale(canvas, layout.heights, shown);
   if (near) {
     const GroundRect around{near->place,
                             Eigen::Matrix2d::Identity(),
@@ -263,9 +281,9 @@ void writeSharedMapPicture(const io::OutputPath& path, const fuse::SharedMap& ma
     drawScaleBar(canvas, colours);
     drawTitle(canvas, colours.rect, "A strip's border, in the strip's own cells");
     const View heights = fitView(layout.near_heights, around);
-    paintHeights(canvas, heights, layers, most);
+    paintValues(canvas, heights, layers, shown);
     drawScaleBar(canvas, heights);
-    drawTitle(canvas, heights.rect, "Plant height there");
+    drawTitle(canvas, heights.rect, shown.title + " there");
   }
   canvas.write(path);
 }
