@@ -79,31 +79,36 @@ ordered_json toJson(const MapChange& found) {
   return json;
 }
 
-std::vector<std::string> describe(const MapChange& found) {
+std::vector<ChangeLine> describe(const MapChange& found) {
   const change::Totals& totals = found.totals;
-  const change::Share& all = totals.compared;
-  std::vector<std::string> lines = {
-      fmt::format("compared    {}, by {:.1f} +- {:.1f} cm on average", describe(all),
-                  100.0 * all.mean(), 100.0 * change::kLevel95 * all.meanDeviation()),
-      fmt::format("rose        {}, by {:.1f} cm (median)", describe(totals.rise),
-                  100.0 * totals.rise.median),
-      fmt::format("fell        {}, by {:.1f} cm (median)", describe(totals.fall),
-                  100.0 * totals.fall.median),
-      fmt::format("level       {:.1f} cm (median): what a cell must exceed",
-                  100.0 * totals.median_detection)};
+  const auto centimetres = [](double metres) { return fmt::format("{:.1f} cm", 100.0 * metres); };
+  const auto average = [](const change::Share& share) {
+    return fmt::format("by {:.1f} +- {:.1f} cm on average", 100.0 * share.mean(),
+                       100.0 * change::kLevel95 * share.meanDeviation());
+  };
+  const auto significant = [&](const change::Share& share) {
+    if (share.cells == 0) return std::string("nowhere by more than its errors");
+    return fmt::format("{}, by {} (median)", describe(share), centimetres(share.median));
+  };
+  std::vector<ChangeLine> lines = {
+      {"compared", fmt::format("{}, {}", describe(totals.compared), average(totals.compared))},
+      {"rose", significant(totals.rise)},
+      {"fell", significant(totals.fall)},
+      {"level", fmt::format("{} (median): what a cell's change must exceed",
+                            centimetres(totals.median_detection))}};
   if (totals.stable && totals.stable->cells > 0) {
-    lines.push_back(fmt::format("bare ground {:.1f} m2, by {:.1f} +- {:.1f} cm on average",
-                                totals.stable->area, 100.0 * totals.stable->mean(),
-                                100.0 * change::kLevel95 * totals.stable->meanDeviation()));
+    lines.push_back({"bare ground",
+                     fmt::format("{:.1f} m2, {}", totals.stable->area, average(*totals.stable))});
   }
-  if (found.plant_height) {
-    lines.push_back(fmt::format("plants      {:.1f} cm high before, {:.1f} cm after (median)",
-                                100.0 * found.plant_height->before,
-                                100.0 * found.plant_height->after));
+  if (found.plant_height && found.plant_height->cells > 0) {
+    lines.push_back({"plants", fmt::format("{} high before, {} after (median)",
+                                           centimetres(found.plant_height->before),
+                                           centimetres(found.plant_height->after))});
   }
   if (found.cover) {
-    lines.push_back(fmt::format("cover       {:.1f} % before, {:.1f} % after",
-                                100.0 * found.cover->before, 100.0 * found.cover->after));
+    lines.push_back(
+        {"cover", fmt::format("{:.1f} % before, {:.1f} % after", 100.0 * found.cover->before,
+                              100.0 * found.cover->after)});
   }
   return lines;
 }
@@ -122,10 +127,14 @@ void writeChange(const io::OutputPath& dir, const MapChange& found, bool picture
   }
   io::writeText(dir / "change.json", toJson(found).dump(2) + "\n");
   if (!picture) return;
+  std::vector<std::string> facts;
+  for (const ChangeLine& line : describe(found)) {
+    facts.push_back(fmt::format("{}: {}", line.label, line.text));
+  }
   report::writeChangePicture(
       dir / "change.png",
       {found.heights, found.ground.frame,
-       fmt::format("{} (before) and {} (after)", found.name_a, found.name_b), describe(found)});
+       fmt::format("{} (before) and {} (after)", found.name_a, found.name_b), facts});
 }
 
 }  // namespace agricolmap

@@ -15,8 +15,10 @@ namespace agricolmap {
 /// Of another layer that both maps have.
 struct LayerChange {
   Raster<float> change;  ///< b − a, NaN where one has none
+  /// What the two values are of: all that both maps have, for heights only where both have plants
+  /// on more than half of the cell, if they say where plants are.
   std::size_t cells = 0;
-  double before = 0.0;  ///< median for heights, mean for covers, of the cells that both have
+  double before = 0.0;  ///< median of heights [m], mean of covers
   double after = 0.0;
 };
 
@@ -38,8 +40,12 @@ inline const std::vector<std::string> kChangeFiles = {"height_change.tif",
                                                       "change.json", "change.png"};
 
 nlohmann::ordered_json toJson(const MapChange& found);
-/// The totals in words, one line each.
-std::vector<std::string> describe(const MapChange& found);
+/// One of the totals in words.
+struct ChangeLine {
+  std::string label;
+  std::string text;
+};
+std::vector<ChangeLine> describe(const MapChange& found);
 /// Into the folder `dir`. Throws OutputError.
 void writeChange(const io::OutputPath& dir, const MapChange& found, bool picture);
 

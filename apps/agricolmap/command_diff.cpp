@@ -1,4 +1,6 @@
 // agricolmap diff MAP_A MAP_B -o DIR
+#include "command_diff.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +11,6 @@
 #include "agricolmap/core/robust.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "change_files.hpp"
-#include "command_diff.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -55,13 +56,14 @@ std::optional<LayerPair> readPair(const char* layer, const ChangeMap& a, const C
   return LayerPair{*std::move(before), *std::move(after)};
 }
 
-LayerChange changeOf(const LayerPair& pair, Summary summary) {
+/// `among`: the cells that the summary is of; nullptr: all.
+LayerChange changeOf(const LayerPair& pair, Summary summary, const Raster<std::uint8_t>* among) {
   LayerChange found{Raster<float>(pair.before.rows(), pair.before.cols())};
   std::vector<float> before;
   std::vector<float> after;
   for (std::size_t i = 0; i < found.change.size(); ++i) {
     found.change[i] = pair.after[i] - pair.before[i];
-    if (std::isnan(found.change[i])) continue;
+    if (std::isnan(found.change[i]) || (among != nullptr && (*among)[i] == 0)) continue;
     before.push_back(pair.before[i]);
     after.push_back(pair.after[i]);
   }
@@ -69,6 +71,15 @@ LayerChange changeOf(const LayerPair& pair, Summary summary) {
   found.before = summaryOf(before, summary);
   found.after = summaryOf(after, summary);
   return found;
+}
+
+/// 1 where more than half of the cell is vegetation in both maps.
+Raster<std::uint8_t> plantsIn(const LayerPair& covers) {
+  Raster<std::uint8_t> plants(covers.before.rows(), covers.before.cols());
+  for (std::size_t i = 0; i < plants.size(); ++i) {
+    plants[i] = covers.before[i] > 0.5F && covers.after[i] > 0.5F ? 1 : 0;
+  }
+  return plants;
 }
 
 /// What two drone's maps lie apart is in no map's errors.
@@ -99,13 +110,15 @@ MapChange compare(const DiffArguments& arguments, Progress& progress,
   progress.step("reading the maps");
   const change::MapHeights heights_a = a.heightsOn(grid, origin, warnings);
   const change::MapHeights heights_b = b.heightsOn(grid, origin, warnings);
-  if (const auto plants = readPair("plant_height", a, b, found.ground)) {
-    found.plant_height = changeOf(*plants, Summary::kMedian);
-  }
   std::optional<Raster<std::uint8_t>> bare;
+  std::optional<Raster<std::uint8_t>> planted;
   if (const auto covers = readPair("cover", a, b, found.ground)) {
-    found.cover = changeOf(*covers, Summary::kMean);
+    found.cover = changeOf(*covers, Summary::kMean, nullptr);
     bare = change::bareGround(covers->before, covers->after);
+    planted = plantsIn(*covers);
+  }
+  if (const auto plants = readPair("plant_height", a, b, found.ground)) {
+    found.plant_height = changeOf(*plants, Summary::kMedian, planted ? &*planted : nullptr);
   }
   progress.step("comparing them");
   found.heights = change::heightChange(heights_a, heights_b, grid.cell, found.frames);
@@ -145,7 +158,9 @@ ExitCode runDiff(const DiffArguments& arguments, const Globals& globals) {
   output.commit(kChangeFiles);
   printWarnings(warnings);
   if (globals.quiet) return ExitCode::kOk;
-  for (const std::string& line : describe(*found)) fmt::print("{}\n", line);
+  for (const ChangeLine& line : describe(*found)) {
+    fmt::print("{:<11} {}\n", line.label, line.text);
+  }
   return ExitCode::kOk;
 }
 

@@ -31,8 +31,8 @@ change::HeightChange threeParts(int rows, int cols) {
   return change;
 }
 
-bool isRise(int r, int g, int b) { return r < 40 && g > 80 && b > 70 && g - b < 30; }
-bool isFall(int r, int g, int b) { return r > 120 && r < 170 && g < 110 && b < 40; }
+bool isRise(int r, int g, int b) { return g - r > 60 && b - r > 60; }
+bool isFall(int r, int g, int b) { return r - b > 60 && g - b > 30 && r > g; }
 bool isHatch(int r, int g, int b) {
   return (r == 0xd3 && g == 0xd5 && b == 0xda) || (r == 0xec && g == 0xec && b == 0xef);
 }
