@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <map>
 #include <optional>
 
+#include "agricolmap/batch/record.hpp"
+#include "agricolmap/core/day.hpp"
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/cloud/move_file.hpp"
@@ -85,6 +85,7 @@ std::optional<MapStrip> stripOf(const std::string& run, const FuseFiles& files, 
   constexpr double kUnknown = 1.0;
   strip.source.errors = {std::min(kUnknown, stored.plane_error),
                          std::min(kUnknown, stored.height_error)};
+  if (const auto record = batch::readRecord(run)) strip.source.date = record->date;
   strip.cloud = alignedIn(run);
   return strip;
 }
@@ -177,7 +178,7 @@ MapPlan planMap(const FuseFiles& files, const fs::path& map, bool overwrite) {
     // A strip that comes again replaces the one of its name.
     std::erase_if(plan.strips, [&](const MapStrip& other) {
       if (other.source.id != id) return false;
-      strip->source.date = other.source.date;
+      if (strip->source.date == 0) strip->source.date = other.source.date;
       return true;
     });
     plan.strips.push_back(*std::move(strip));
@@ -239,18 +240,7 @@ io::CloudFormat storedFormat() {
 }
 
 std::int32_t dateNamed(const std::string& flag, const std::string& text) {
-  std::string digits;
-  for (const char c : text) {
-    if (c != '-') digits += c;
-  }
-  if (digits.size() == 8 && digits.find_first_not_of("0123456789") == std::string::npos) {
-    const std::int32_t number = std::stoi(digits);
-    const std::chrono::year_month_day day{
-        std::chrono::year(number / 10000),
-        std::chrono::month(static_cast<unsigned>(number / 100 % 100)),
-        std::chrono::day(static_cast<unsigned>(number % 100))};
-    if (day.ok()) return number;
-  }
+  if (const std::int32_t day = dayOf(text); day != 0) return day;
   throw UsageError(fmt::format("{} {}: is no day; write YYYY-MM-DD", flag, text));
 }
 

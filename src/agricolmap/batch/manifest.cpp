@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include "agricolmap/batch/file_pattern.hpp"
 #include "agricolmap/batch/manifest_nodes.hpp"
 #include "agricolmap/config/text.hpp"
+#include "agricolmap/core/day.hpp"
 #include "agricolmap/core/error.hpp"
 
 namespace agricolmap::batch {
@@ -45,20 +45,6 @@ bool isGoodId(const std::string& id) {
          !id.starts_with("summary.") && std::all_of(id.begin(), id.end(), [](unsigned char c) {
            return std::isalnum(c) != 0 || c >= 0x80 || c == '.' || c == '_' || c == '-' || c == '+';
          });
-}
-
-/// YYYY-MM-DD or YYYYMMDD as a number; 0 where it is no day.
-int dayOf(const std::string& text) {
-  std::string digits = text;
-  if (text.size() == 10 && text[4] == '-' && text[7] == '-') {
-    digits = text.substr(0, 4) + text.substr(5, 2) + text.substr(8);
-  }
-  if (digits.size() != 8 || digits.find_first_not_of("0123456789") != std::string::npos) return 0;
-  const int number = std::stoi(digits);
-  const std::chrono::year_month_day day{std::chrono::year(number / 10000),
-                                        std::chrono::month(number / 100 % 100),
-                                        std::chrono::day(number % 100)};
-  return day.ok() ? number : 0;
 }
 
 class Reader {
