@@ -174,7 +174,7 @@ TEST_F(DiffTest, TakesSurfaceModels) {
   const std::string after = writeSheet(inFolder("after.tif"), raised);
   expectFailure({"diff", before, after, "-o", inFolder("out")}, 2,
                 {"before.tif", "nothing is known of its errors", "--error-a HEIGHT PLANE"});
-  run({"diff", before, after, "-o", inFolder("out"), "--error-a", "0.03", "--error-b", "0.04",
+  run({"diff", before, after, "-o", inFolder("out"), "--error-a", "0.03", "0", "--error-b", "0.04",
        "0.0", "--no-pictures"});
   const nlohmann::json json = jsonOf(inFolder("out/change.json"));
   EXPECT_NEAR(json["surface"]["rise"]["mean_m"], 0.2, 1e-4);

@@ -1,5 +1,4 @@
 // agricolmap diff MAP_A MAP_B -o DIR
-#include "command_diff.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +27,7 @@ struct DiffArguments {
 
 std::optional<GivenError> givenError(const std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
-  return GivenError{values[0], values.size() > 1 ? values[1] : 0.0};
+  return GivenError{.height = values[0], .plane = values[1]};
 }
 
 enum class Summary { kMedian, kMean };
@@ -175,7 +174,7 @@ CommandSlot addDiffCommand(CLI::App& app, const Globals& globals) {
   command->add_option("MAP_B", arguments->map_b, "The map after")->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
   const auto error = [&](const char* flag, std::vector<double>& values, const char* help) {
-    command->add_option(flag, values, help)->expected(1, 2)->check(CLI::Range(0.0, 100.0));
+    command->add_option(flag, values, help)->expected(2)->check(CLI::Range(0.0, 100.0));
   };
   error("--error-a", arguments->error_a,
         "Expected RMS of the heights, and of the places, of MAP_A [m]; instead of its own");

@@ -19,7 +19,6 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/processor.hpp"
 #include "agricolmap/io/raster/raster_file.hpp"
-#include "command_diff.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
 #include "support/signal_stop.hpp"

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <map>
 #include <vector>
 
+#include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/robust.hpp"
 
 namespace agricolmap::change {
@@ -42,88 +42,106 @@ Eigen::Vector2d gradientAt(const Raster<float>& surface, int row, int col, doubl
   return {along(0, 1), along(1, 0)};
 }
 
-class Sum {
- public:
-  Sum(const HeightChange& change, const MapHeights& a, const MapHeights& b, double cell,
-      const FrameError& frames)
-      : change_(change), a_(a), b_(b), cell_(cell), frames_(frames) {}
+/// What one map says of a cell.
+struct Look {
+  std::uint16_t source = 0;
+  double height_error = 0.0;
+  double plane_error = 0.0;
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+};
 
-  void add(int row, int col) {
-    const std::size_t i = change_.change.index(row, col);
-    values_.push_back(change_.change[i]);
-    sum_ += static_cast<double>(change_.change[i]);
-    addTo(of_a_[a_.source[i]], a_, row, col);
-    addTo(of_b_[b_.source[i]], b_, row, col);
+Look lookAt(const MapHeights& map, int row, int col, double cell) {
+  const std::size_t i = map.surface.index(row, col);
+  return {map.source[i], static_cast<double>(map.height_error[i]),
+          static_cast<double>(map.plane_error[i]), gradientAt(map.surface, row, col, cell)};
+}
+
+/// The sources of one map, by their codes.
+class Sources {
+ public:
+  void add(const Look& look) {
+    if (look.source >= all_.size()) all_.resize(look.source + std::size_t{1});
+    Common& common = all_[look.source];
+    common.height += look.height_error;
+    common.slope += look.slope;
+    common.plane_square += look.plane_error * look.plane_error;
+    ++common.cells;
+  }
+  /// They err apart [m²].
+  double square() const {
+    double sum = 0.0;
+    for (const Common& common : all_) sum += common.square();
+    return sum;
+  }
+  Eigen::Vector2d slope() const {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (const Common& common : all_) sum += common.slope;
+    return sum;
   }
 
-  Share share() {
+ private:
+  std::vector<Common> all_;
+};
+
+class Sum {
+ public:
+  void add(float change, const Look& a, const Look& b) {
+    values_.push_back(change);
+    sum_ += static_cast<double>(change);
+    of_a_.add(a);
+    of_b_.add(b);
+  }
+
+  Share share(double cell, const FrameError& frames) {
     Share share;
     share.cells = values_.size();
     if (values_.empty()) return share;
-    const double area = cell_ * cell_;
+    const double area = cell * cell;
     const auto count = static_cast<double>(values_.size());
     share.area = area * count;
     share.volume = area * sum_;
-    double square = 0.0;
-    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-    for (const auto* groups : {&of_a_, &of_b_}) {
-      for (const auto& [source, common] : *groups) square += common.square();
-    }
-    for (const auto& [source, common] : of_b_) slope += common.slope;
-    square += std::pow(count * frames_.height, 2.0) +
-              0.5 * std::pow(frames_.plane, 2.0) * slope.squaredNorm();
+    const double square = of_a_.square() + of_b_.square() + std::pow(count * frames.height, 2.0) +
+                          0.5 * std::pow(frames.plane, 2.0) * of_b_.slope().squaredNorm();
     share.deviation = area * std::sqrt(square);
     share.median = static_cast<double>(median(values_));
     return share;
   }
 
  private:
-  void addTo(Common& common, const MapHeights& map, int row, int col) const {
-    const std::size_t i = map.surface.index(row, col);
-    const auto plane = static_cast<double>(map.plane_error[i]);
-    common.height += static_cast<double>(map.height_error[i]);
-    common.slope += gradientAt(map.surface, row, col, cell_);
-    common.plane_square += plane * plane;
-    ++common.cells;
-  }
-
-  const HeightChange& change_;
-  const MapHeights& a_;
-  const MapHeights& b_;
-  double cell_;
-  FrameError frames_;
   std::vector<float> values_;
   double sum_ = 0.0;
-  std::map<std::uint16_t, Common> of_a_;
-  std::map<std::uint16_t, Common> of_b_;
+  Sources of_a_;
+  Sources of_b_;
 };
 
 }  // namespace
 
 Totals totalsOf(const HeightChange& change, const MapHeights& a, const MapHeights& b, double cell,
                 const FrameError& frames, const Raster<std::uint8_t>* stable) {
-  const Sum none(change, a, b, cell, frames);
-  Sum compared = none;
-  Sum rise = none;
-  Sum fall = none;
-  Sum unchanged = none;
+  Sum compared;
+  Sum rise;
+  Sum fall;
+  Sum unchanged;
   std::vector<float> levels;
   for (int row = 0; row < change.change.rows(); ++row) {
+    throwIfInterrupted();
     for (int col = 0; col < change.change.cols(); ++col) {
       const float value = change.change(row, col);
       if (std::isnan(value)) continue;
       levels.push_back(change.detection(row, col));
-      compared.add(row, col);
-      if (change.significant(row, col) > 0.0F) (value > 0.0F ? rise : fall).add(row, col);
-      if (stable != nullptr && (*stable)(row, col) != 0) unchanged.add(row, col);
+      const Look of_a = lookAt(a, row, col, cell);
+      const Look of_b = lookAt(b, row, col, cell);
+      compared.add(value, of_a, of_b);
+      if (change.significant(row, col) > 0.0F) (value > 0.0F ? rise : fall).add(value, of_a, of_b);
+      if (stable != nullptr && (*stable)(row, col) != 0) unchanged.add(value, of_a, of_b);
     }
   }
   Totals totals;
-  totals.compared = compared.share();
-  totals.rise = rise.share();
-  totals.fall = fall.share();
+  totals.compared = compared.share(cell, frames);
+  totals.rise = rise.share(cell, frames);
+  totals.fall = fall.share(cell, frames);
   if (!levels.empty()) totals.median_detection = static_cast<double>(median(levels));
-  if (stable != nullptr) totals.stable = unchanged.share();
+  if (stable != nullptr) totals.stable = unchanged.share(cell, frames);
   return totals;
 }
 

@@ -1,5 +1,0 @@
-#pragma once
-#include "common.hpp"
-namespace agricolmap {
-CommandSlot addDiffCommand(CLI::App& app, const Globals& globals);
-}
