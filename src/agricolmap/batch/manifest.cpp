@@ -223,9 +223,10 @@ bool Reader::inherit(std::size_t entry, std::vector<std::size_t>& chain) {
       for (const std::size_t one : chain) {
         names.push_back(entries_[one].id ? entries_[one].id->value : "?");
       }
-      if (next == entry) {
-        problems_.add(like.line, fmt::format("strips are like one another in a circle: {} -> {}",
-                                             fmt::join(names, " -> "), like.value));
+      if (next == entry && entry == *std::min_element(chain.begin(), chain.end())) {
+        problems_.add(entries_[entry].like->line,
+                      fmt::format("strips are like one another in a circle: {} -> {}",
+                                  fmt::join(names, " -> "), like.value));
       }
       return false;
     }

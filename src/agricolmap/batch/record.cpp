@@ -102,8 +102,9 @@ void writeRecord(const io::OutputPath& path, const Record& record) {
 std::optional<Record> readRecord(const fs::path& folder) {
   std::ifstream stream(folder / kRecordName);
   const Json json = Json::parse(stream, nullptr, false);
-  if (!json.is_object() || json.value("format", "") != "agricolmap-batch-item") return std::nullopt;
+  if (!json.is_object()) return std::nullopt;
   try {
+    if (json.at("format") != "agricolmap-batch-item") return std::nullopt;
     Record record;
     record.id = json.at("id");
     record.map = json.at("map");
