@@ -34,7 +34,7 @@ RecordLayout::RecordLayout(const std::vector<RecordField>& fields, const PointFi
   };
   if (points.normal && std::all_of(points.normal->begin(), points.normal->end(),
                                    [&](auto field) { return isFloating(fields[field].type); })) {
-    normal_.emplace();
+    normal_ = std::array<Value, 3>{};
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
     Value value{before_, after_, fields[i].type, fields[i].type};

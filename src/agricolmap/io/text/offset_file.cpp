@@ -67,7 +67,9 @@ bool mayBeOffset(const std::string& file_name) {
 
 Eigen::Affine3d readOffset(const std::filesystem::path& path) {
   if (const auto offset = odmOffset(path)) return *offset;
-  const auto [n, lines] = readNumbers(path);
+  const NumberFile file = readNumbers(path);
+  const std::vector<double>& n = file.numbers;
+  const std::vector<std::size_t>& lines = file.lines;
   if (!lines.empty() && lines.front() != lines.back()) {
     const auto second = std::find_if(lines.begin(), lines.end(),
                                      [&](std::size_t line) { return line != lines.front(); });
