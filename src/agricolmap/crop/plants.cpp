@@ -10,11 +10,10 @@ namespace agricolmap::crop {
 
 namespace {
 
-static const double kSmoothing =
-    getenv("KSM") ? atof(getenv("KSM")) : 0.13;  // of the curve, in spacings
-static const double kLeastTop = getenv("KLT") ? atof(getenv("KLT")) : 0.16;  // of a usual plant's
-static const double kNoiseTop =
-    getenv("KNT") ? atof(getenv("KNT")) : 5.0;  // deviations of the soil's noise
+constexpr double kSmoothing = 0.13;  // of the curve, in spacings
+constexpr double kSharpening = 2.0;
+constexpr double kLeastTop = 0.08;    // of a usual plant's
+constexpr double kNoiseTop = 2.5;     // deviations of the soil's noise
 constexpr double kTouching = 1.55;    // length of green, in spacings, that is more than a plant
 constexpr double kEdge = 0.25;        // of a plant's top: where its green ends
 constexpr double kMostUnknown = 0.5;  // of a gap
@@ -32,9 +31,7 @@ struct Top {
 /// plants of one drill seldom stand nearer than half a spacing, leaves of one plant do.
 double depthNeeded(double spacings) {
   if (spacings < 0.33) return 2.0;
-  return std::clamp((getenv("KD0") ? atof(getenv("KD0")) : 0.60) -
-                        (getenv("KD1") ? atof(getenv("KD1")) : 1.25) * (spacings - 0.33),
-                    0.06, 0.60);
+  return std::clamp(0.5 - 1.2 * (spacings - 0.33), 0.06, 0.5);
 }
 
 std::vector<Top> topsOf(const RowProfile& curve) {
@@ -50,13 +47,14 @@ std::vector<Top> topsOf(const RowProfile& curve) {
   return tops;
 }
 
-RowProfile sharpened(const RowProfile& profile, double sigma) {
-  static const double a = getenv("KSH") ? atof(getenv("KSH")) : 0.0;
-  RowProfile fine = smoothed(profile, sigma);
-  if (a <= 0.0) return fine;
-  const RowProfile wide = smoothed(profile, 2.0 * sigma);
-  for (std::size_t i = 0; i < fine.green.size(); ++i)
-    fine.green[i] += a * (fine.green[i] - wide.green[i]);
+/// Smoothed, and what stands out of a neighbourhood twice as wide made to stand out more: two
+/// plants that the map blurs into one hill become two tops again.
+RowProfile sharpened(const RowProfile& profile, double distance) {
+  RowProfile fine = smoothed(profile, kSmoothing * distance);
+  const RowProfile wide = smoothed(profile, 2.0 * kSmoothing * distance);
+  for (std::size_t i = 0; i < fine.green.size(); ++i) {
+    fine.green[i] += kSharpening * (fine.green[i] - wide.green[i]);
+  }
   return fine;
 }
 
@@ -188,7 +186,7 @@ std::vector<Stretch> gapsOf(const RowProfile& profile, const RowPlants& row, dou
 double usualTop(const std::vector<RowProfile>& rows, double distance) {
   std::vector<double> heights;
   for (const RowProfile& row : rows) {
-    const RowProfile curve = sharpened(row, kSmoothing * distance);
+    const RowProfile curve = sharpened(row, distance);
     std::vector<Top> tops = topsOf(curve);
     std::erase_if(tops, [&](const Top& top) { return top.height < kNoiseTop * curve.noise; });
     mergeTops(curve, distance, tops);
@@ -200,7 +198,7 @@ double usualTop(const std::vector<RowProfile>& rows, double distance) {
 RowPlants findPlants(const GridFrame& frame, const Raster<float>& green, const RowLine& line,
                      const RowProfile& profile, double half, double distance, double usual) {
   RowPlants row;
-  const RowProfile curve = sharpened(profile, kSmoothing * distance);
+  const RowProfile curve = sharpened(profile, distance);
   const double least = std::max(kNoiseTop * curve.noise, kLeastTop * usual);
   std::vector<Top> tops = topsOf(curve);
   std::erase_if(tops, [&](const Top& top) { return top.height < 0.5 * least; });
