@@ -43,6 +43,7 @@ CommandSlot addControlPointsCommand(CLI::App& app, const Globals& globals);
 CommandSlot addApplyCommand(CLI::App& app, const Globals& globals);
 CommandSlot addConvertCommand(CLI::App& app, const Globals& globals);
 CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
+CommandSlot addFactsCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);
 

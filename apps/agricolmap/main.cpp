@@ -103,7 +103,7 @@ ExitCode run(int argc, char** argv) {
       addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
       addConvertCommand(app, globals),  addImportCommand(app, globals),
       addApplyCommand(app, globals),    addInfoCommand(app, globals),
-      addDocumentCommand(app, globals)};
+      addFactsCommand(app, globals),    addDocumentCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;

@@ -1,5 +1,6 @@
 // Stands for the pictures where Cairo is not built in.
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/report/pictures/facts_picture.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 
 namespace agricolmap::report {
@@ -11,6 +12,11 @@ std::vector<std::string> pictureNames() { return {}; }
 std::vector<std::string> writePictures(const io::OutputPath& /*dir*/,
                                        const pipeline::Registration& /*registration*/,
                                        const PictureInfo& /*info*/) {
+  throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
+}
+
+void writeFactsPicture(const io::OutputPath& /*path*/, const GridFrame& /*frame*/,
+                       const PlacedFacts& /*placed*/) {
   throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
 }
 
