@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "agricolmap/config/markdown.hpp"
+#include "agricolmap/crop/facts.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/pipeline/options.hpp"
 #include "agricolmap/simulate/ortho/ortho_file.hpp"
@@ -51,6 +52,7 @@ ExitCode runDocument() {
       "flags. `uav.gsd` is at least the mosaic's.");
   printSection<io::ImportOptions>(
       "convert and import", "From an orthomosaic and a surface model to a cloud; flags only.");
+  printSection<crop::FactsOptions>("facts", "What is looked for on a field; flags only.");
   return ExitCode::kOk;
 }
 

@@ -46,6 +46,7 @@ CommandSlot addFuseCommand(CLI::App& app, const Globals& globals);
 CommandSlot addConvertCommand(CLI::App& app, const Globals& globals);
 CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDiffCommand(CLI::App& app, const Globals& globals);
+CommandSlot addFactsCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);
 

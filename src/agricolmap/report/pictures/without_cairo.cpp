@@ -1,6 +1,7 @@
 // Stands for the pictures where Cairo is not built in.
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/report/pictures/change_picture.hpp"
+#include "agricolmap/report/pictures/facts_picture.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 #include "agricolmap/report/pictures/shared_map_picture.hpp"
 
@@ -23,6 +24,11 @@ void writeSharedMapPicture(const io::OutputPath& /*path*/, const fuse::SharedMap
 }
 
 void writeChangePicture(const io::OutputPath& /*path*/, const ChangeScene& /*scene*/) {
+  throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
+}
+
+void writeFactsPicture(const io::OutputPath& /*path*/, const GridFrame& /*frame*/,
+                       const PlacedFacts& /*placed*/) {
   throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
 }
 

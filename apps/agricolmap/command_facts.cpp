@@ -1,0 +1,111 @@
+// agricolmap facts MAP -o DIR: what stands on the field, counted and measured.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "agricolmap/crop/facts.hpp"
+#include "agricolmap/crop/local_ground.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/io/vector/vector_layer.hpp"
+#include "agricolmap/report/facts/facts_layers.hpp"
+#include "agricolmap/report/pictures/facts_picture.hpp"
+#include "common.hpp"
+#include "facts_input.hpp"
+#include "option_flags.hpp"
+
+namespace agricolmap {
+namespace {
+
+constexpr const char* kPicture = "facts.png";
+constexpr const char* kBrapi = "brapi.geojson";
+constexpr const char* kPlots = "plots.csv";
+
+struct FactsArguments {
+  std::string map;
+  std::string output;
+  std::string plots;
+  std::string crs;
+  bool no_pictures = false;
+  OptionFlags flags;
+};
+
+std::vector<crop::Plot> readPlots(const std::string& path, const FactsInput& input) {
+  std::vector<crop::Plot> plots;
+  if (path.empty()) return plots;
+  for (io::NamedPolygon& polygon : io::readPolygons(path, input.crs)) {
+    for (Eigen::Vector2d& corner : polygon.corners) corner -= input.origin;
+    plots.push_back({std::move(polygon.id), std::move(polygon.corners)});
+  }
+  return plots;
+}
+
+/// Heights above the soil that the map shows, unless they are that already.
+void bringToGround(FactsInput& input, const map::VegetationOptions& options) {
+  if (input.above_ground) return;
+  const crop::View view{input.frame, input.exg, input.height};
+  const crop::Greenness greenness = crop::greennessOf(view, options);
+  if (greenness.known()) input.height = crop::heightAboveGround(view, greenness);
+}
+
+void writeFiles(const io::StagedOutput& output, const report::PlacedFacts& placed) {
+  const std::vector<io::VectorLayer> layers = report::factsLayers(placed);
+  io::writeGeoPackage(output.path("facts.gpkg"), layers, placed.crs);
+  for (const io::VectorLayer& layer : layers) {
+    io::writeCsv(output.path(layer.name + ".csv"), layer);
+  }
+  io::writeText(output.path("facts.json"), report::factsJson(placed).dump(2) + "\n");
+  const nlohmann::ordered_json brapi = report::brapiJson(placed);
+  if (!brapi.is_null()) io::writeText(output.path(kBrapi), brapi.dump(1) + "\n");
+}
+
+ExitCode runFacts(const FactsArguments& arguments, const Globals& globals) {
+  crop::FactsOptions options;
+  arguments.flags.apply(optionTable(options));
+  requirePictures(arguments.no_pictures);
+  io::StagedOutput output(arguments.output, globals.overwrite);
+  Progress progress(globals);
+  progress.step("read");
+  FactsInput input = readFactsInput(arguments.map, arguments.crs, progress);
+  const std::vector<crop::Plot> plots = readPlots(arguments.plots, input);
+  progress.step("look");
+  bringToGround(input, options.vegetation);
+  const crop::View view{input.frame, input.exg, input.height};
+  const crop::FieldFacts facts = crop::factsOf(view, input.origin, plots, options);
+  if (!facts.greenness.known()) {
+    throw InputError(fmt::format("{}: no crop facts: {}", arguments.map,
+                                 map::toString(facts.greenness.threshold.status)));
+  }
+  const report::PlacedFacts placed{facts, input.origin, plots, input.crs, arguments.map};
+  progress.step("write");
+  writeFiles(output, placed);
+  if (!arguments.no_pictures) {
+    report::writeFactsPicture(output.path(kPicture), input.frame, placed);
+  }
+  output.commit({kPicture, kBrapi, kPlots});
+  if (!globals.quiet) fmt::print("{}", report::factsText(placed));
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+CommandSlot addFactsCommand(CLI::App& app, const Globals& globals) {
+  auto arguments = std::make_shared<FactsArguments>();
+  CLI::App* command = app.add_subcommand(
+      "facts", "Count and measure what stands on a field: rows, plants, gaps, heights, weeds");
+  command
+      ->add_option("MAP", arguments->map,
+                   "Folder of a map with its layers, or a cloud, or ORTHO.tif,DSM.tif")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
+  command->add_option("--plots", arguments->plots,
+                      "Polygons to count in, too: GeoPackage, GeoJSON, shapefile, ...");
+  command->add_option("--crs", arguments->crs,
+                      "Coordinate system of a cloud that does not say its own: EPSG:32632, ...");
+  command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG picture");
+  crop::FactsOptions defaults;
+  arguments->flags.addTo(*command, optionTable(defaults), "What is looked for");
+  return {command, [arguments, &globals] { return runFacts(*arguments, globals); }};
+}
+
+}  // namespace agricolmap

@@ -1,0 +1,118 @@
+#include "agricolmap/crop/local_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "agricolmap/core/parallel.hpp"
+#include "agricolmap/core/robust.hpp"
+#include "agricolmap/crop/row_line.hpp"
+
+namespace agricolmap::crop {
+
+namespace {
+
+constexpr std::size_t kLeastBare = 12;    // cells of a square
+constexpr std::size_t kSample = 200'000;  // of cells, for medians
+
+/// Takes the mean of its known neighbours for each square that has none, again and again.
+void fillSquares(Raster<float>& squares) {
+  for (bool again = true; again;) {
+    again = false;
+    const Raster<float> before = squares;
+    bool any = false;
+    for (int r = 0; r < squares.rows(); ++r) {
+      for (int c = 0; c < squares.cols(); ++c) {
+        any = any || std::isfinite(before(r, c));
+        if (std::isfinite(before(r, c))) continue;
+        float sum = 0.0F;
+        float count = 0.0F;
+        for (int y = std::max(0, r - 1); y <= std::min(r + 1, squares.rows() - 1); ++y) {
+          for (int x = std::max(0, c - 1); x <= std::min(c + 1, squares.cols() - 1); ++x) {
+            if (!std::isfinite(before(y, x))) continue;
+            sum += before(y, x);
+            count += 1.0F;
+          }
+        }
+        if (count > 0.0F) squares(r, c) = sum / count;
+        again = again || count == 0.0F;
+      }
+    }
+    if (!any) return;
+  }
+}
+
+}  // namespace
+
+Raster<float> heightAboveGround(const View& view, const Greenness& greenness,
+                                const GroundOptions& options) {
+  const GridFrame& frame = view.frame;
+  const int side = std::max(1, static_cast<int>(std::lround(options.tile / frame.cell)));
+  GridFrame coarse = frame;
+  coarse.cell = side * frame.cell;
+  coarse.rows = (frame.rows + side - 1) / side;
+  coarse.cols = (frame.cols + side - 1) / side;
+  Raster<float> squares(coarse.rows, coarse.cols, kUnknown);
+  const float bare = 0.5F * greenness.leaf;
+  parallelFor(static_cast<std::size_t>(coarse.rows), [&](std::size_t item) {
+    const int r = static_cast<int>(item);
+    std::vector<float> heights;
+    for (int c = 0; c < coarse.cols; ++c) {
+      heights.clear();
+      for (int y = r * side; y < std::min(frame.rows, (r + 1) * side); ++y) {
+        for (int x = c * side; x < std::min(frame.cols, (c + 1) * side); ++x) {
+          if (std::isfinite(view.height(y, x)) && greenness.green(y, x) < bare) {
+            heights.push_back(view.height(y, x));
+          }
+        }
+      }
+      if (heights.size() >= kLeastBare) squares(r, c) = median(heights);
+    }
+  });
+  fillSquares(squares);
+  Raster<float> above = view.height;
+  parallelFor(
+      static_cast<std::size_t>(frame.rows),
+      [&](std::size_t item) {
+        const int r = static_cast<int>(item);
+        for (int c = 0; c < frame.cols; ++c) {
+          if (std::isfinite(above(r, c))) {
+            above(r, c) -= knownValue(coarse, squares, frame.centre(r, c));
+          }
+        }
+      },
+      16);
+  return above;
+}
+
+HeightContrast heightContrast(const Raster<float>& height, const Greenness& greenness) {
+  std::vector<float> plants;
+  std::vector<float> soil;
+  const std::size_t step = std::max<std::size_t>(1, height.size() / kSample);
+  for (std::size_t i = 0; i < height.size(); i += step) {
+    if (!std::isfinite(height[i]) || !std::isfinite(greenness.green[i])) continue;
+    if (greenness.green[i] > greenness.leaf) plants.push_back(height[i]);
+    if (greenness.green[i] < 0.5F * greenness.leaf) soil.push_back(height[i]);
+  }
+  HeightContrast contrast;
+  if (plants.empty() || soil.empty()) return contrast;
+  contrast.plants = static_cast<double>(median(plants));
+  const float usual = median(soil);
+  for (float& value : soil) value = std::abs(value - usual);
+  contrast.noise = deviationFrom(soil);
+  return contrast;
+}
+
+Raster<float> standing(const Raster<float>& height, const Greenness& greenness) {
+  Raster<float> result = greenness.green;
+  if (height.empty()) return result;
+  const HeightContrast contrast = heightContrast(height, greenness);
+  if (!contrast.tells()) return result;
+  const auto usual = static_cast<float>(contrast.plants);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (std::isfinite(height[i])) result[i] *= std::clamp(height[i] / usual, 0.0F, 2.0F);
+  }
+  return result;
+}
+
+}  // namespace agricolmap::crop
