@@ -87,7 +87,7 @@ Raster<float> heightAboveGround(const View& view, const Greenness& greenness,
 
 HeightContrast heightContrast(const Raster<float>& height, const Greenness& greenness) {
   std::vector<float> plants;
-  std::vector<float> soil;
+  std::vector<double> soil;
   const std::size_t step = std::max<std::size_t>(1, height.size() / kSample);
   for (std::size_t i = 0; i < height.size(); i += step) {
     if (!std::isfinite(height[i]) || !std::isfinite(greenness.green[i])) continue;
@@ -97,8 +97,8 @@ HeightContrast heightContrast(const Raster<float>& height, const Greenness& gree
   HeightContrast contrast;
   if (plants.empty() || soil.empty()) return contrast;
   contrast.plants = static_cast<double>(median(plants));
-  const float usual = median(soil);
-  for (float& value : soil) value = std::abs(value - usual);
+  const double usual = median(soil);
+  for (double& value : soil) value = std::abs(value - usual);
   contrast.noise = deviationFrom(soil);
   return contrast;
 }
