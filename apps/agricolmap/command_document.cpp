@@ -3,6 +3,7 @@
 
 #include "agricolmap/config/markdown.hpp"
 #include "agricolmap/crop/facts.hpp"
+#include "agricolmap/fuse/options.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/pipeline/options.hpp"
 #include "agricolmap/simulate/ortho/ortho_file.hpp"
@@ -25,7 +26,8 @@ ExitCode runDocument() {
       "<!-- Written by `agricolmap document-options`; a test compares. -->\n\n"
       "Every option is a flag (`--grid.cell 0.02`, `--prior.heading-deg 3`; `-` stands for `_`) "
       "and, for\n"
-      "`register` and `simulate`, a key of the YAML file given with `--config` (`grid:` and below "
+      "`register`, `simulate` and `fuse`, a key of the YAML file given with `--config` (`grid:` "
+      "and below "
       "it\n"
       "`cell: 0.02`). Flags win over the file, the file over the preset. `--dump-config` prints "
       "what is in\n"
@@ -52,6 +54,7 @@ ExitCode runDocument() {
       "flags. `uav.gsd` is at least the mosaic's.");
   printSection<io::ImportOptions>(
       "convert and import", "From an orthomosaic and a surface model to a cloud; flags only.");
+  printSection<fuse::FuseOptions>("fuse", "One map of a drone's cloud and strips.");
   printSection<crop::FactsOptions>("facts", "What is looked for on a field; flags only.");
   return ExitCode::kOk;
 }

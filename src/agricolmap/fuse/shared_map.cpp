@@ -215,6 +215,61 @@ std::vector<StripInput> sorted(std::vector<StripInput> strips) {
   return strips;
 }
 
+/// Every strip on the lattice, as it was laid.
+void takeStrips(const std::vector<StripInput>& inputs, const Eigen::Vector3d& origin,
+                const FuseOptions& options, SharedMap& map) {
+  map.strips.resize(inputs.size());
+  parallelFor(inputs.size(), [&](std::size_t i) {
+    FusedStrip& strip = map.strips[i];
+    strip.id = inputs[i].id;
+    strip.code = static_cast<std::uint16_t>(kFixedSource + 1 + i);
+    strip.date = inputs[i].date;
+    strip.errors = inputs[i].errors;
+    strip.cells = stripCells(*inputs[i].points, shiftOf(*inputs[i].points, origin), map.lattice,
+                             options.least_seen);
+  });
+}
+
+/// What each strip's colours and heights are worth beside the fixed cloud's.
+void compareWithFixed(const map::GridMap& fixed, std::int32_t fixed_date, SharedMap& map) {
+  for (FusedStrip& strip : map.strips) {
+    strip.greenness = greennessOf(strip.cells.coarse);
+    const bool same_day = strip.date == 0 || fixed_date == 0 || strip.date == fixed_date;
+    strip.tone = toneOf(strip.cells, strip.greenness, fixed, map.fixed_greenness, same_day);
+    strip.flat = !map::hasRelief(strip.cells.coarse);
+    if (strip.flat && !map.flat) {
+      map.warnings.push_back(strip.id +
+                             ": has no heights; those of its cells are the fixed cloud's");
+    }
+  }
+}
+
+Raster<float> surfaceOf(const map::GridMap& map) {
+  Raster<float> surface = map.height;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    if (!map.valid(i)) surface[i] = kNone;
+  }
+  return surface;
+}
+
+void composeLayers(const FixedHeights& fixed, std::int32_t fixed_date, bool match_colours,
+                   SharedMap& map) {
+  std::vector<Claim> claims;
+  for (const FusedStrip& strip : map.strips) {
+    claims.push_back({&strip.cells, strip.code, strip.date,
+                      std::hypot(strip.errors.plane, strip.errors.height)});
+  }
+  Layers& layers = map.layers;
+  layers.source = ownersOf(fixed.map, claims);
+  takeFixed(fixed, fixed_date, map, layers);
+  for (FusedStrip& strip : map.strips) takeStrip(strip, match_colours, layers);
+  layers.ground = groundOf(layers.frame, layers.surface, layers.cover);
+  layers.plant_height = layers.surface;
+  for (std::size_t i = 0; i < layers.ground.size(); ++i) {
+    layers.plant_height[i] -= layers.ground[i];
+  }
+}
+
 }  // namespace
 
 SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
@@ -230,61 +285,30 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
   SharedMap map;
   step("extents");
   map.lattice = latticeOf(fixed, inputs, options, map.warnings);
+  map.layers = emptyLayers(map.lattice.frame, origin);
 
   step("fixed cloud");
   map::GridMap drone = surfaceMap(fixed, Eigen::Vector3d::Zero(), map.lattice.frame);
   fillBetween(drone);
   map.fixed_greenness = greennessOf(drone);
   map.flat = !map::hasRelief(drone);
+
   step("strips");
-  for (const StripInput& input : inputs) {
-    FusedStrip& strip = map.strips.emplace_back();
-    strip.id = input.id;
-    strip.code = static_cast<std::uint16_t>(kFixedSource + map.strips.size());
-    strip.date = input.date;
-    strip.errors = input.errors;
-    strip.cells =
-        stripCells(*input.points, shiftOf(*input.points, origin), map.lattice, options.least_seen);
-  }
+  takeStrips(inputs, origin, options, map);
   adjust(inputs, origin, options, map);
-  for (FusedStrip& strip : map.strips) {
-    strip.greenness = greennessOf(strip.cells.coarse);
-    const bool same_day = strip.date == 0 || fixed_date == 0 || strip.date == fixed_date;
-    strip.tone = toneOf(strip.cells, strip.greenness, drone, map.fixed_greenness, same_day);
-    strip.flat = !map::hasRelief(strip.cells.coarse);
-    if (strip.flat && !map.flat) {
-      map.warnings.push_back(strip.id +
-                             ": has no heights; those of its cells are the fixed cloud's");
-    }
-  }
+  compareWithFixed(drone, fixed_date, map);
 
   step("heights");
   const Raster<float> cover = coverOf(drone, map.fixed_greenness);
-  Raster<float> surface = drone.height;
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    if (!drone.valid(i)) surface[i] = kNone;
-  }
-  const Raster<float> drone_ground = groundOf(map.lattice.frame, surface, cover);
-  const FixedHeights heights{drone, drone_ground, cover};
-  if (options.correct_heights && !map.flat)
+  const Raster<float> ground = groundOf(map.lattice.frame, surfaceOf(drone), cover);
+  const FixedHeights heights{drone, ground, cover};
+  if (options.correct_heights && !map.flat) {
     map.bias = heightBiasOf(heights, measuredOf(inputs, map.strips));
+  }
   map.correction = heightCorrection(heights, map.bias, raisedOf(map), options.seam);
 
   step("layers");
-  std::vector<Claim> claims;
-  for (const FusedStrip& strip : map.strips) {
-    claims.push_back({&strip.cells, strip.code, strip.date,
-                      std::hypot(strip.errors.plane, strip.errors.height)});
-  }
-  map.layers = emptyLayers(map.lattice.frame, origin);
-  map.layers.source = ownersOf(drone, claims);
-  takeFixed(heights, fixed_date, map, map.layers);
-  for (FusedStrip& strip : map.strips) takeStrip(strip, options.match_colours, map.layers);
-  map.layers.ground = groundOf(map.lattice.frame, map.layers.surface, map.layers.cover);
-  map.layers.plant_height = map.layers.surface;
-  for (std::size_t i = 0; i < map.layers.ground.size(); ++i) {
-    map.layers.plant_height[i] -= map.layers.ground[i];
-  }
+  composeLayers(heights, fixed_date, options.match_colours, map);
   return map;
 }
 
