@@ -28,13 +28,13 @@ std::vector<Eigen::Vector2d> placesOf(const FieldRows& rows) {
   return places;
 }
 
-/// How many of `of` have one of `among` within `reach`.
-std::size_t near(const std::vector<Eigen::Vector2d>& of, const std::vector<Eigen::Vector2d>& among,
-                 double reach) {
-  return static_cast<std::size_t>(std::count_if(of.begin(), of.end(), [&](const auto& a) {
+/// Share of `of` that have one of `among` within 3 cm.
+double met(const std::vector<Eigen::Vector2d>& of, const std::vector<Eigen::Vector2d>& among) {
+  const auto count = std::count_if(of.begin(), of.end(), [&](const auto& a) {
     return std::any_of(among.begin(), among.end(),
-                       [&](const auto& b) { return (a - b).norm() < reach; });
-  }));
+                       [&](const auto& b) { return (a - b).norm() < 0.03; });
+  });
+  return static_cast<double>(count) / static_cast<double>(of.size());
 }
 
 TEST(Rows, AreFoundAtAnyHeading) {
@@ -46,8 +46,8 @@ TEST(Rows, AreFoundAtAnyHeading) {
     EXPECT_NEAR(std::abs(std::remainder(rows.heading - turn, std::numbers::pi)), 0.0, 0.02) << turn;
     EXPECT_NEAR(rows.spacing.distance, 0.2, 0.005) << turn;
     const std::vector<Eigen::Vector2d> found = placesOf(rows);
-    EXPECT_GT(near(field.plants, found, 0.03), 0.98 * field.plants.size()) << turn;
-    EXPECT_GT(near(found, field.plants, 0.03), 0.995 * found.size()) << turn;
+    EXPECT_GT(met(field.plants, found), 0.98) << turn;
+    EXPECT_GT(met(found, field.plants), 0.995) << turn;
   }
 }
 
@@ -57,8 +57,8 @@ TEST(Rows, AreFollowedThroughBends) {
   field.sow([](double u) { return 0.04 * u * u; }, 0.2, kNoneMissing);
   const FieldRows rows = rowsOf(field);
   const std::vector<Eigen::Vector2d> found = placesOf(rows);
-  EXPECT_GT(near(field.plants, found, 0.03), 0.95 * field.plants.size());
-  EXPECT_GT(near(found, field.plants, 0.03), 0.98 * found.size());
+  EXPECT_GT(met(field.plants, found), 0.95);
+  EXPECT_GT(met(found, field.plants), 0.98);
   double longest = 0.0;
   for (const FieldRow& row : rows.rows) longest = std::max(longest, row.line.length());
   EXPECT_GT(longest, 11.0);
