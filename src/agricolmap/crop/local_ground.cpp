@@ -12,8 +12,7 @@ namespace agricolmap::crop {
 
 namespace {
 
-constexpr std::size_t kLeastBare = 12;    // cells of a square
-constexpr std::size_t kSample = 200'000;  // of cells, for medians
+constexpr std::size_t kLeastBare = 12;  // cells of a square
 
 /// Takes the mean of its known neighbours for each square that has none, again and again.
 void fillSquares(Raster<float>& squares) {
@@ -83,36 +82,6 @@ Raster<float> heightAboveGround(const View& view, const Greenness& greenness,
       },
       16);
   return above;
-}
-
-HeightContrast heightContrast(const Raster<float>& height, const Greenness& greenness) {
-  std::vector<float> plants;
-  std::vector<double> soil;
-  const std::size_t step = std::max<std::size_t>(1, height.size() / kSample);
-  for (std::size_t i = 0; i < height.size(); i += step) {
-    if (!std::isfinite(height[i]) || !std::isfinite(greenness.green[i])) continue;
-    if (greenness.green[i] > greenness.leaf) plants.push_back(height[i]);
-    if (greenness.green[i] < 0.5F * greenness.leaf) soil.push_back(height[i]);
-  }
-  HeightContrast contrast;
-  if (plants.empty() || soil.empty()) return contrast;
-  contrast.plants = static_cast<double>(median(plants));
-  const double usual = median(soil);
-  for (double& value : soil) value = std::abs(value - usual);
-  contrast.noise = deviationFrom(soil);
-  return contrast;
-}
-
-Raster<float> standing(const Raster<float>& height, const Greenness& greenness) {
-  Raster<float> result = greenness.green;
-  if (height.empty()) return result;
-  const HeightContrast contrast = heightContrast(height, greenness);
-  if (!contrast.tells()) return result;
-  const auto usual = static_cast<float>(contrast.plants);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    if (std::isfinite(height[i])) result[i] *= std::clamp(height[i] / usual, 0.0F, 2.0F);
-  }
-  return result;
 }
 
 }  // namespace agricolmap::crop

@@ -1,0 +1,96 @@
+// What is said of a whole field, of squares and of plots.
+#include "agricolmap/crop/facts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "agricolmap/crop/local_ground.hpp"
+#include "agricolmap/crop/test_crop.hpp"
+
+namespace agricolmap::crop {
+namespace {
+
+TestField sownField() {
+  TestField field;
+  field.sow([](double) { return 0.0; }, 0.0, [](int row, int k) { return row == 1 && k == 2; });
+  return field;
+}
+
+TEST(Facts, OfAFieldOfKnownPlants) {
+  TestField field = sownField();
+  // Two weeds of 6 cm across between rows, one within a row's reach is the crop's own leaf.
+  field.disc({2.05, 2.75}, 0.03, 0.02);
+  field.disc({5.05, 5.25}, 0.03, 0.02);
+  const auto planted = static_cast<double>(field.plants.size());
+  const FieldFacts facts = factsOf(field.view(), {0.0, 0.0}, {}, {});
+  ASSERT_TRUE(facts.countable);
+  EXPECT_NEAR(facts.total.plants, planted, 0.02 * planted);
+  EXPECT_LE(facts.total.plants_low, planted);
+  EXPECT_GE(facts.total.plants_high, planted);
+  EXPECT_EQ(facts.total.gaps, 1U);
+  EXPECT_EQ(facts.weeds.patches.size(), 2U);
+  EXPECT_EQ(facts.total.patches, 2U);
+  EXPECT_NEAR(facts.total.weeds * facts.total.between, 2.0 * 3.14 * 0.03 * 0.03, 0.002);
+  EXPECT_NEAR(facts.total.area, 64.0, 0.1);
+  EXPECT_NEAR(facts.total.cover, planted * 3.14 * 0.05 * 0.05 / 64.0, 0.01);
+  EXPECT_NEAR(facts.total.height.middle, 0.1, 0.01);
+  double by_rows = 0.0;
+  for (const StandFacts& row : facts.per_row) by_rows += row.plants;
+  EXPECT_NEAR(by_rows, facts.total.plants, 1.0);
+  double by_squares = 0.0;
+  for (const GridSquare& square : facts.grid) by_squares += square.facts.plants;
+  EXPECT_NEAR(by_squares, facts.total.plants, 1.0);
+}
+
+TEST(Facts, OfPlotsAndOfSquaresOnRoundCoordinates) {
+  const TestField field = sownField();
+  const std::vector<Plot> plots = {{"west", {{0.0, 0.0}, {4.0, 0.0}, {4.0, 8.0}, {0.0, 8.0}}},
+                                   {"none", {{20.0, 0.0}, {24.0, 0.0}, {24.0, 8.0}}}};
+  FactsOptions options;
+  options.grid = 2.0;
+  const FieldFacts facts = factsOf(field.view(), {1001.0, 500.0}, plots, options);
+  ASSERT_EQ(facts.per_plot.size(), 2U);
+  const auto west =
+      static_cast<double>(std::count_if(field.plants.begin(), field.plants.end(),
+                                        [](const Eigen::Vector2d& p) { return p.x() < 4.0; }));
+  EXPECT_NEAR(facts.per_plot[0].plants, west, 0.03 * west);
+  EXPECT_NEAR(facts.per_plot[0].area, 32.0, 0.1);
+  EXPECT_EQ(facts.per_plot[1].area, 0.0);
+  EXPECT_TRUE(std::isnan(facts.per_plot[1].height.middle));
+  // From 1000 to 1010 east and 500 to 508 north.
+  EXPECT_EQ(facts.grid.size(), 5U * 4U);
+  for (const GridSquare& square : facts.grid) {
+    EXPECT_NEAR(std::remainder(square.corner.x() + 1001.0, 2.0), 0.0, 1e-9);
+  }
+}
+
+TEST(Facts, OfBareSoilAreNone) {
+  const TestField field;
+  const FieldFacts facts = factsOf(field.view(), {0.0, 0.0}, {}, {});
+  EXPECT_FALSE(facts.greenness.known());
+  EXPECT_TRUE(facts.rows.rows.empty());
+}
+
+TEST(LocalGround, FollowsASlopeUnderThePlants) {
+  TestField field = sownField();
+  for (int r = 0; r < field.frame.rows; ++r) {
+    for (int c = 0; c < field.frame.cols; ++c) {
+      const Eigen::Vector2d at = field.frame.centre(r, c);
+      field.height(r, c) += static_cast<float>(0.03 * at.x() + 0.02 * std::sin(at.y()));
+    }
+  }
+  const Greenness greenness = greennessOf(field.view());
+  const Raster<float> above = heightAboveGround(field.view(), greenness);
+  std::vector<double> plants;
+  for (std::size_t i = 0; i < above.size(); ++i) {
+    if (greenness.green[i] > 0.8F) plants.push_back(static_cast<double>(above[i]));
+  }
+  std::sort(plants.begin(), plants.end());
+  EXPECT_NEAR(plants[plants.size() / 2], 0.1, 0.005);
+  EXPECT_NEAR(plants[plants.size() / 20], 0.1, 0.02);
+}
+
+}  // namespace
+}  // namespace agricolmap::crop
