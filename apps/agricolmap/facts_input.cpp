@@ -6,14 +6,17 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/crs/crs.hpp"
+#include "agricolmap/io/raster/geo_reader.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
-#include "agricolmap/io/raster/raster_file.hpp"
 #include "agricolmap/map/footprint.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/map/level.hpp"
+#include "agricolmap/report/json/shared_map_file.hpp"
 
 namespace agricolmap {
 namespace {
@@ -23,37 +26,18 @@ constexpr double kSigmaCells = 0.6;   // of the mean of a cell's points
 constexpr double kLeastCell = 0.004;  // finer ones show a leaf's veins [m]
 constexpr double kMostCells = 40e6;   // of a map that has finer layers in places
 
-/// A layer with its place, row 0 southernmost.
-struct Layer {
+/// What a strip shows in cells of its own.
+struct FineStrip {
   GridFrame frame;  ///< file coordinates [m]
-  Raster<float> values;
-  std::string crs;
+  Raster<float> exg;
+  Raster<float> height;
 };
 
-Layer readLayer(const std::filesystem::path& path) {
-  io::RasterHeights raster = io::readHeights(path);
-  const std::string name = path.string();
-  if (!raster.place.world_from_pixel) {
-    throw InputError(fmt::format("{}: does not say where it lies", name));
-  }
-  const Eigen::Affine2d& world = *raster.place.world_from_pixel;
-  const double cell = world(0, 0);
-  const bool upright = std::abs(world(0, 1)) < 1e-9 * cell && std::abs(world(1, 0)) < 1e-9 * cell &&
-                       std::abs(world(1, 1) + cell) < 1e-6 * cell;
-  if (!(cell > 0.0) || !upright) {
-    throw InputError(fmt::format("{}: its cells are no squares with north up", name));
-  }
-  Layer layer;
-  layer.crs = raster.place.crs;
-  layer.frame.cell = cell;
-  layer.frame.rows = raster.height.rows();
-  layer.frame.cols = raster.height.cols();
-  layer.frame.corner = world * Eigen::Vector2d(0.0, layer.frame.rows);
-  layer.values = Raster<float>(layer.frame.rows, layer.frame.cols);
-  for (int r = 0; r < layer.frame.rows; ++r) {
-    std::copy_n(raster.height.row(layer.frame.rows - 1 - r), layer.frame.cols, layer.values.row(r));
-  }
-  return layer;
+/// Corner in file coordinates.
+GridFrame placedFrame(const io::LayerShape& shape) {
+  GridFrame frame = shape.frame;
+  frame.corner += shape.origin.head<2>();
+  return frame;
 }
 
 bool sameLattice(const GridFrame& a, const GridFrame& b) {
@@ -61,68 +45,103 @@ bool sameLattice(const GridFrame& a, const GridFrame& b) {
          (a.corner - b.corner).norm() < 1e-3 * a.cell;
 }
 
-/// The value under `point`; of a layer with finer cells the mean of those within `side`.
-float valueAt(const Layer& layer, const Eigen::Vector2d& point, double side) {
-  const Eigen::Vector2d at = layer.frame.cellOf(point);
-  const int reach = static_cast<int>((0.5 * side / layer.frame.cell) + 1e-6);
+/// The band of that name, as `fuse` calls it. Throws InputError where there is none.
+Raster<float> bandOf(io::Layer<float>& layer, const std::string& name) {
+  for (std::size_t i = 0; i < layer.bands.size(); ++i) {
+    if (layer.shape.bands[i] == name) return std::move(layer.bands[i]);
+  }
+  throw InputError(fmt::format("{}: has no band '{}'; make the map anew", layer.shape.name, name));
+}
+
+std::vector<FineStrip> fineStripsOf(const std::filesystem::path& folder) {
+  std::vector<FineStrip> strips;
+  for (const report::MapSource& source : report::readSharedMap(folder).strips) {
+    const std::filesystem::path path = folder / "fine" / (source.id + ".tif");
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) continue;  // one that owns nothing
+    io::Layer<float> layer = io::readLayer<float>(path);
+    strips.push_back(
+        {placedFrame(layer.shape), bandOf(layer, "excess green"), bandOf(layer, "plant height")});
+  }
+  return strips;
+}
+
+/// The mean of the cells within `side` of `point`; one cell where that is no more.
+float valueAt(const GridFrame& frame, const Raster<float>& values, const Eigen::Vector2d& point,
+              double side) {
+  const Eigen::Vector2d at = frame.cellOf(point);
+  const int reach = static_cast<int>((0.5 * side / frame.cell) + 1e-6);
   const auto col = static_cast<int>(std::lround(at.x()));
   const auto row = static_cast<int>(std::lround(at.y()));
   float sum = 0.0F;
   float count = 0.0F;
   for (int r = row - reach; r <= row + reach; ++r) {
     for (int c = col - reach; c <= col + reach; ++c) {
-      if (!layer.values.contains(r, c) || !std::isfinite(layer.values(r, c))) continue;
-      sum += layer.values(r, c);
+      if (!values.contains(r, c) || !std::isfinite(values(r, c))) continue;
+      sum += values(r, c);
       count += 1.0F;
     }
   }
   return count > 0.0F ? sum / count : kNone;
 }
 
-/// The layer on finer cells: the fine one's values where it has any.
-Raster<float> merged(const Layer& coarse, const Layer& fine, const GridFrame& frame) {
-  Raster<float> result(frame.rows, frame.cols, kNone);
-  for (int r = 0; r < frame.rows; ++r) {
-    for (int c = 0; c < frame.cols; ++c) {
-      const Eigen::Vector2d point = frame.centre(r, c);
-      const float value = valueAt(fine, point, frame.cell - fine.frame.cell);
-      result(r, c) = std::isfinite(value) ? value : valueAt(coarse, point, 0.0);
+/// Each cell cut into `finer` × `finer` of the same value.
+Raster<float> cut(const Raster<float>& coarse, int finer) {
+  Raster<float> fine(coarse.rows() * finer, coarse.cols() * finer);
+  for (int r = 0; r < fine.rows(); ++r) {
+    for (int c = 0; c < fine.cols(); ++c) fine(r, c) = coarse(r / finer, c / finer);
+  }
+  return fine;
+}
+
+/// Puts a strip's values in place of the map's, where it has any.
+void paint(const GridFrame& from, const Raster<float>& values, const GridFrame& frame,
+           Raster<float>& into) {
+  const Eigen::Vector2d low = frame.cellOf(from.corner);
+  const Eigen::Vector2d high =
+      frame.cellOf(from.corner + from.cell * Eigen::Vector2d(from.cols, from.rows));
+  const int row_end = std::min(frame.rows, static_cast<int>(std::ceil(high.y())) + 1);
+  const int col_end = std::min(frame.cols, static_cast<int>(std::ceil(high.x())) + 1);
+  for (int r = std::max(0, static_cast<int>(std::floor(low.y()))); r < row_end; ++r) {
+    for (int c = std::max(0, static_cast<int>(std::floor(low.x()))); c < col_end; ++c) {
+      const float value = valueAt(from, values, frame.centre(r, c), frame.cell - from.cell);
+      if (std::isfinite(value)) into(r, c) = value;
     }
   }
-  return result;
 }
 
 FactsInput readMapFolder(const std::filesystem::path& folder) {
-  const std::filesystem::path layers = folder / "layers";
-  Layer exg = readLayer(layers / "exg.tif");
-  Layer height = readLayer(layers / "plant_height.tif");
-  if (!sameLattice(exg.frame, height.frame)) {
-    throw InputError(
-        fmt::format("{}: exg.tif and plant_height.tif have not the same cells; make "
-                    "the map anew",
-                    layers.string()));
-  }
+  const std::vector<FineStrip> strips = fineStripsOf(folder);
+  io::Layer<float> exg = io::readLayer<float>(folder / "layers/exg.tif");
   FactsInput input;
   input.above_ground = true;
-  if (const auto crs = io::crsFromWkt(exg.crs)) input.crs = *crs;
-  input.frame = exg.frame;
-  const std::filesystem::path fine = folder / "fine";
-  std::error_code error;
-  if (std::filesystem::exists(fine / "exg.tif", error)) {
-    const Layer fine_exg = readLayer(fine / "exg.tif");
-    const Layer fine_height = readLayer(fine / "plant_height.tif");
-    const double cells = static_cast<double>(exg.values.size());
-    const double ratio = std::round(exg.frame.cell / fine_exg.frame.cell);
-    const int finer =
-        static_cast<int>(std::clamp(std::floor(std::sqrt(kMostCells / cells)), 1.0, ratio));
+  if (const auto crs = io::crsFromWkt(exg.shape.crs)) input.crs = *crs;
+  input.frame = placedFrame(exg.shape);
+  input.exg = std::move(exg.bands.front());
+  std::error_code ignored;
+  // A map of clouds without heights has no such layer.
+  if (const auto path = folder / "layers/plant_height.tif";
+      std::filesystem::exists(path, ignored)) {
+    io::Layer<float> height = io::readLayer<float>(path);
+    if (!sameLattice(input.frame, placedFrame(height.shape))) {
+      throw InputError(
+          fmt::format("{}: has not the cells of exg.tif; make the map anew", path.string()));
+    }
+    input.height = std::move(height.bands.front());
+  }
+  if (!strips.empty()) {
+    const double most = std::sqrt(kMostCells / static_cast<double>(input.exg.size()));
+    const double ratio = std::round(input.frame.cell / strips.front().frame.cell);
+    const int finer = static_cast<int>(std::clamp(std::floor(most), 1.0, std::max(1.0, ratio)));
     input.frame.cell /= finer;
     input.frame.rows *= finer;
     input.frame.cols *= finer;
-    input.exg = merged(exg, fine_exg, input.frame);
-    input.height = merged(height, fine_height, input.frame);
-  } else {
-    input.exg = std::move(exg.values);
-    input.height = std::move(height.values);
+    input.exg = cut(input.exg, finer);
+    if (!input.height.empty()) input.height = cut(input.height, finer);
+    for (const FineStrip& strip : strips) {
+      paint(strip.frame, strip.exg, input.frame, input.exg);
+      if (!input.height.empty()) paint(strip.frame, strip.height, input.frame, input.height);
+    }
   }
   input.origin = input.frame.corner.array().floor().matrix();
   input.frame.corner -= input.origin;
