@@ -179,7 +179,7 @@ void Reader::readEntry(const YAML::Node& node) {
 }
 
 std::string Reader::existing(const Text& name, const std::string& what) {
-  const std::string file = placed(name.value);
+  std::string file = placed(name.value);
   if (fs::is_regular_file(file)) return file;
   problems_.add(name.line, fmt::format("{}: there is no such file ({})", file, what));
   return {};

@@ -75,8 +75,9 @@ Weeds findWeeds(const GridFrame& frame, const Greenness& greenness, const RowBan
     }
     WeedPatch found;
     for (const std::size_t k : patch) {
-      const auto cols = static_cast<std::size_t>(frame.cols);
-      found.place += frame.centre(static_cast<double>(k / cols), static_cast<double>(k % cols)) /
+      const std::size_t row = k / static_cast<std::size_t>(frame.cols);
+      const std::size_t col = k % static_cast<std::size_t>(frame.cols);
+      found.place += frame.centre(static_cast<double>(row), static_cast<double>(col)) /
                      static_cast<double>(patch.size());
     }
     const Eigen::Vector2d at = frame.cellOf(found.place);

@@ -39,7 +39,7 @@ struct Look {
 };
 const std::array<Look, 3>& looks() {
   static const std::array<Look, 3> kLooks = {{{"accepted", hexColour(0x56b4e9), {}},
-                                              {"ambiguous", hexColour(0xf0e442), {2.0, 4.0}},
+                                              {"ambiguous", hexColour(0xf0e442), {4.0, 4.0}},
                                               {"rejected", hexColour(0xd55e00), {9.0, 5.0}}}};
   return kLooks;
 }

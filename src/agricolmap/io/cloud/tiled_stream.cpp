@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <span>
 #include <utility>
 
@@ -133,7 +134,7 @@ void TiledStream::load(std::size_t batch, const TileRange& tiles, Buffers& buffe
   buffers.numbers.clear();
   // Tiles of a row lie one behind the other.
   const auto append = [&](auto& values, std::uint64_t place, std::size_t first, std::size_t count) {
-    using Value = typename std::remove_reference_t<decltype(values)>::value_type;
+    using Value = std::ranges::range_value_t<decltype(values)>;
     const std::size_t before = values.size();
     values.resize(before + count);
     file_.read(place + first * sizeof(Value),

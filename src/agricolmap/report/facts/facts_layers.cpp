@@ -12,7 +12,6 @@ namespace {
 using io::FieldKind;
 using io::GeometryKind;
 using io::VectorFeature;
-using io::VectorField;
 using io::VectorLayer;
 using io::VectorValue;
 
