@@ -155,6 +155,28 @@ Eigen::Affine3d flattened(const map::Levelling& levelling) {
   return result;
 }
 
+/// Points of a cloud leave cells empty that lie between seen ones: these take their neighbours'
+/// mean.
+void fillBetween(Raster<float>& values) {
+  constexpr int kLeastNeighbours = 3;
+  const Raster<float> before = values;
+  for (int row = 1; row + 1 < values.rows(); ++row) {
+    for (int col = 1; col + 1 < values.cols(); ++col) {
+      if (std::isfinite(before(row, col))) continue;
+      float sum = 0.0F;
+      int count = 0;
+      for (int r = row - 1; r <= row + 1; ++r) {
+        for (int c = col - 1; c <= col + 1; ++c) {
+          if (!std::isfinite(before(r, c))) continue;
+          sum += before(r, c);
+          ++count;
+        }
+      }
+      if (count >= kLeastNeighbours) values(row, col) = sum / static_cast<float>(count);
+    }
+  }
+}
+
 FactsInput readCloudInput(const std::string& path, const std::string& given, Progress& progress) {
   const io::MapFiles files = io::mapFilesOf(path);
   const io::FileCrs crs = io::crsOfMap(files, given);
@@ -186,6 +208,8 @@ FactsInput readCloudInput(const std::string& path, const std::string& given, Pro
     gridded.exg[i] = kNone;
     gridded.height[i] = kNone;
   }
+  fillBetween(gridded.exg);
+  fillBetween(gridded.height);
   input.exg = std::move(gridded.exg);
   input.height = std::move(gridded.height);
   return input;

@@ -105,10 +105,12 @@ void finish(const FieldFacts& field, StandFacts& facts, Sums& sums) {
   const auto counted = static_cast<double>(facts.counted);
   const double touching = facts.uncounted / distance;
   facts.plants = counted + touching;
-  // As many weeds to the square metre stand in the rows as between them, and count as plants.
-  const double in_rows = facts.between > 0.0
-                             ? static_cast<double>(facts.patches) / facts.between * sums.row_area
-                             : 0.0;
+  // As many weeds to the square metre stand in the rows as between them; where a plant is missing
+  // they count as one, elsewhere they are taken for leaves of the plant beside them.
+  const double missing = facts.row_length > 0.0 ? facts.gap_length / facts.row_length : 0.0;
+  const double in_rows = facts.between > 0.0 ? static_cast<double>(facts.patches) / facts.between *
+                                                   sums.row_area * missing
+                                             : 0.0;
   const double error = kTouchingError * touching;
   const double spread =
       kTwoSided * std::sqrt(sums.variance + sums.unseen + in_rows + error * error);
