@@ -98,13 +98,35 @@ TEST_F(FactsTest, WritesAGeoPackageThatOthersRead) {
   EXPECT_EQ(entries("facts").count("facts.gpkg"), 1U);
 }
 
+TEST_F(FactsTest, PlantsWhoseLeavesTouchAreNotCounted) {
+  const ProgramResult result =
+      run({"facts", pair().uav(), "-o", inFolder("facts"), "--no-pictures"});
+  EXPECT_NE(result.out.find("plants touch"), std::string::npos) << result.out;
+  const auto json = jsonOf(inFolder("facts/facts.json"));
+  EXPECT_TRUE(json["total"]["plants"].is_null());
+  EXPECT_GT(json["rows"]["count"], 20);
+}
+
+TEST_F(FactsTest, OfASharedMapSeeTheStripsInTheirOwnCells) {
+  run({"fuse", pair("strips").uav(), pair("strips").folder.parent_path() / "runs/strip_1", "-o",
+       inFolder("map"), "--cloud-format", "none", "--no-pictures"});
+  run({"facts", inFolder("map"), "-o", inFolder("facts"), "--no-pictures"});
+  run({"facts", pair("strips").uav(), "-o", inFolder("drone"), "--no-pictures"});
+  const auto map = jsonOf(inFolder("facts/facts.json"));
+  const auto drone = jsonOf(inFolder("drone/facts.json"));
+  EXPECT_NEAR(map["rows"]["spacing_m"], drone["rows"]["spacing_m"], 0.01);
+  EXPECT_NEAR(map["total"]["cover"], drone["total"]["cover"], 0.03);
+  // What the drone's blur flattens the robot has seen.
+  EXPECT_GT(map["total"]["height_m"]["p90"], drone["total"]["height_m"]["p90"]);
+}
+
 TEST_F(FactsTest, WhatCannotBeUsedIsNamed) {
   const std::string field = simulated();
   const std::string cloud = field + "/uav/point_cloud.ply";
   const std::string out = inFolder("facts");
   expectFailure({"facts", inFolder("none.ply"), "-o", out}, 3, {"none.ply"});
   std::filesystem::create_directories(inFolder("map/layers"));
-  expectFailure({"facts", inFolder("map"), "-o", out}, 3, {"exg.tif"});
+  expectFailure({"facts", inFolder("map"), "-o", out}, 3, {"map.json"});
   expectFailure({"facts", cloud, "-o", out, "--plots", inFolder("none.gpkg")}, 3, {"none.gpkg"});
   const std::string text = write("plots.txt", "no polygons here");
   expectFailure({"facts", cloud, "-o", out, "--plots", text}, 3, {"plots.txt", "GeoPackage"});

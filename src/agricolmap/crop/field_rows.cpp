@@ -15,6 +15,11 @@ constexpr double kCoarseCell = 0.03;   // that rows are looked for on [m]
 constexpr double kRowHalf = 0.30;      // of the row spacing …
 constexpr double kMostRowHalf = 0.20;  // … and at most [m]
 
+/// The plants that were found do not stand where the rhythm of the rows has them: where leaves
+/// touch, the rhythm is that of two or three plants, and tops are somewhere between. On simulated
+/// beets it was 0.17 where they touch and at most 0.03 before.
+constexpr double kOffRhythm = 0.08;
+
 /// Median distance of neighbouring plants that stand about one spacing apart.
 double refinedDistance(const std::vector<FieldRow>& rows, double distance) {
   std::vector<double> steps;
@@ -27,14 +32,20 @@ double refinedDistance(const std::vector<FieldRow>& rows, double distance) {
   return steps.size() < 20 ? distance : median(steps);
 }
 
+/// Nothing is counted anywhere.
+void closeAll(FieldRows& field) {
+  field.spacing = {};
+  for (FieldRow& row : field.rows) {
+    row.stand = {};
+    row.stand.touching = {{0.0, row.line.length()}};
+  }
+}
+
 void findAllPlants(const GridFrame& frame, const Raster<float>& green, FieldRows& field) {
   std::vector<RowProfile> profiles;
   for (const FieldRow& row : field.rows) profiles.push_back(row.profile);
   field.spacing = plantSpacing(profiles);
-  if (!(field.spacing.distance > 0.0)) {
-    for (FieldRow& row : field.rows) row.stand.touching = {{0.0, row.line.length()}};
-    return;
-  }
+  if (!(field.spacing.distance > 0.0)) return closeAll(field);
   for (int round = 0; round < 2; ++round) {
     const double usual = usualTop(profiles, field.spacing.distance);
     parallelFor(field.rows.size(), [&](std::size_t i) {
@@ -42,7 +53,10 @@ void findAllPlants(const GridFrame& frame, const Raster<float>& green, FieldRows
       row.stand = findPlants(frame, green, row.line, row.profile, field.half_width,
                              field.spacing.distance, usual);
     });
-    if (round == 0) field.spacing.distance = refinedDistance(field.rows, field.spacing.distance);
+    if (round > 0) break;
+    const double refined = refinedDistance(field.rows, field.spacing.distance);
+    if (std::abs(refined / field.spacing.distance - 1.0) > kOffRhythm) return closeAll(field);
+    field.spacing.distance = refined;
   }
 }
 
