@@ -216,6 +216,12 @@ RowPlants findPlants(const GridFrame& frame, const Raster<float>& green, const R
       continue;
     }
     CropPlant plant = plantAt(frame, green, line, curve, top, half, distance);
+    // Beyond the border the curve goes on for a little.
+    const Eigen::Vector2d cell = frame.cellOf(plant.place);
+    if (!green.contains(static_cast<int>(std::lround(cell.y())),
+                        static_cast<int>(std::lround(cell.x())))) {
+      continue;
+    }
     plant.height = std::numeric_limits<double>::quiet_NaN();
     const double by_size = std::clamp(0.5 + 0.5 * (top.height / least - 1.0), 0.5, 1.0);
     const double by_valley = std::clamp(0.5 + top.parted, 0.5, 1.0);
