@@ -52,10 +52,10 @@ void addStandValues(const crop::StandFacts& facts, bool countable,
                  facts.between > 0.0 ? static_cast<double>(facts.patches) / facts.between : kNone,
                  facts.row_length});
   if (countable) {
-    values.insert(values.end(),
-                  {facts.plants, facts.plants_low, facts.plants_high, number(facts.counted),
-                   facts.uncounted, facts.row_length > 0.0 ? facts.plants / facts.row_length : kNone,
-                   number(facts.gaps), facts.gap_length});
+    values.insert(values.end(), {facts.plants, facts.plants_low, facts.plants_high,
+                                 number(facts.counted), facts.uncounted,
+                                 facts.row_length > 0.0 ? facts.plants / facts.row_length : kNone,
+                                 number(facts.gaps), facts.gap_length});
   }
   values.insert(values.end(), {facts.height.low, facts.height.middle, facts.height.high});
 }
