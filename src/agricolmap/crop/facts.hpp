@@ -37,8 +37,8 @@ struct StandFacts {
   double uncounted = 0.0;    ///< of it where plants cannot be told apart [m]
   std::size_t counted = 0;   ///< plants told apart
   double plants = 0.0;       ///< these, and one per spacing where they cannot be told apart
-  double plants_low = 0.0;   ///< that holds the true number in 19 cases of 20, as far as it was
-  double plants_high = 0.0;  ///< calibrated: docs/crop-facts.md
+  double plants_low = 0.0;   ///< by what is doubtful of each plant; not calibrated
+  double plants_high = 0.0;  ///< (docs/crop-facts.md)
   std::size_t gaps = 0;      ///< whose middle is here
   double gap_length = 0.0;   ///< of these [m]
   HeightRanks height;
