@@ -13,7 +13,7 @@ namespace {
 constexpr double kSmoothing = 0.13;  // of the curve, in spacings
 constexpr double kSharpening = 2.0;
 constexpr double kLeastTop = 0.08;    // of a usual plant's
-constexpr double kNoiseTop = 2.5;     // deviations of the soil's noise
+constexpr double kNoiseTop = 1.5;     // deviations of the soil's noise in the sharpened curve
 constexpr double kTouching = 1.55;    // length of green, in spacings, that is more than a plant
 constexpr double kEdge = 0.25;        // of a plant's top: where its green ends
 constexpr double kMostUnknown = 0.5;  // of a gap
@@ -55,6 +55,10 @@ RowProfile sharpened(const RowProfile& profile, double distance) {
   for (std::size_t i = 0; i < fine.green.size(); ++i) {
     fine.green[i] += kSharpening * (fine.green[i] - wide.green[i]);
   }
+  // Of white noise under Gaussians of σ and 2σ, which correlate by √0.8.
+  constexpr double kOwn = 1.0 + kSharpening;
+  fine.noise *= std::sqrt(kOwn * kOwn + 0.5 * kSharpening * kSharpening -
+                          2.0 * kOwn * kSharpening * std::sqrt(0.4));
   return fine;
 }
 
