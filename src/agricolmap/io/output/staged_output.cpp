@@ -179,7 +179,7 @@ void StagedOutput::moveAside(const fs::path& name) {
     throw OutputError(
         fmt::format("{}: a folder stands where a file should be written", from.string()));
   }
-  const fs::path to = staging_ / "old" / name;
+  const fs::path to = staging_ / kSetAside / name;
   fs::create_directories(to.parent_path(), error);
   if (error) fail(from, "cannot be set aside", error);
   renameOrFail(from, to);
@@ -219,7 +219,7 @@ void StagedOutput::mergeInto(const fs::path& fresh, const std::vector<std::strin
 void StagedOutput::replaceBy(const fs::path& fresh) {
   if (::renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) return;
   if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be put in place", lastError());
-  const fs::path old = staging_ / "old";
+  const fs::path old = staging_ / kSetAside;
   renameOrFail(target_, old);
   if (::rename(fresh.c_str(), target_.c_str()) == 0) return;
   const std::error_code reason = lastError();

@@ -20,6 +20,10 @@ enum class Existing {
 /// killed one has left: the name of its target; else empty.
 std::string targetOfHidden(const std::string& name);
 
+/// What is replaced waits under this name in the hidden folder where a file system cannot exchange
+/// two folders.
+inline constexpr const char* kSetAside = "old";
+
 /// A folder of results, filled out of sight and put in place by `commit`. Destroyed without commit
 /// (an exception, an interrupt), it leaves everything as it was.
 ///

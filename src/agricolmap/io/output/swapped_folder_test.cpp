@@ -77,9 +77,12 @@ TEST(SwappedFolder, WhatAKilledRunLeftIsRemoved) {
 TEST(SwappedFolder, WhatWasSetAsideComesBack) {
   const TempDir dir;
   make(dir / "map", "one");
-  fs::rename(dir / "map", dir / ".map.old");
+  // As a run leaves it that was killed between two renames; the greatest of process numbers.
+  fs::create_directories(dir / ".map.partial-4194304/new");
+  fs::rename(dir / "map", dir / ".map.partial-4194304/old");
   { const SwappedFolder folder(dir / "map"); }
   EXPECT_EQ(contentOf(dir / "map/sub/file.txt"), "one");
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir.path()), {}), 1);
 }
 
 TEST(SwappedFolder, OneRunAtATime) {
