@@ -69,9 +69,10 @@ class DiffTest : public CliTest {
     layer.nodata = 0.0;
     layer.overviews = io::Overviews::kNearest;
     write("source.tif", {{&source, "source", ""}});
-    return describe(name, R"({"format": "agricolmap-map", "format_version": 1,
-      "sources": [{"code": 1, "file": ")" +
-                              field.drone + R"("}]})");
+    return describe(name, R"({"format": "agricolmap-map", "format_version": 1, "crs": null,
+      "flat": false, "sources": [{"code": 1, "id": "fixed", "date": null, "points": 7,
+      "file": ")" + field.drone +
+                              R"("}]})");
   }
 
   /// Writes map.json alone; returns the map's folder.
@@ -125,7 +126,7 @@ TEST_F(DiffTest, FindsWhatGrewAndNothingElse) {
 
 TEST_F(DiffTest, InfoSaysWhatAMapIsMadeOf) {
   const std::string out = run({"info", writeMap("june", {})}).out;
-  for (const char* part : {"of version 1", "UTM zone 32N", "sources    1", "june.laz",
+  for (const char* part : {"UTM zone 32N", "sources    1", "fixed, june.laz",
                            "layers     5: cover, error, plant_height, source, surface",
                            "400 x 300 of 0.02 m", "500000.000 to 500008.000 m"}) {
     EXPECT_NE(out.find(part), std::string::npos) << part << " is not in:\n" << out;
@@ -194,13 +195,21 @@ TEST_F(DiffTest, RefusesMapsThatDoNotGoTogether) {
   field.south_west.x() += 1000.0;
   refuses(writeMap("away", field), {"away", "do not overlap", "500000.0"});
   refuses(describe("newer", R"({"format": "agricolmap-map", "format_version": 2})"),
-          {"newer/map.json", "version 2", "update"});
+          {"newer/map.json", "version 2", "newer one"});
   refuses(describe("torn", R"({"format": "agricolmap-m)"), {"torn/map.json", "damaged", "fuse"});
-  refuses(describe("list", "[1]"), {"list/map.json", "damaged"});
+  refuses(describe("list", "[1]"), {"list/map.json", "is no shared map"});
   refuses(describe("foreign", R"({"format": 7})"), {"foreign/map.json", "agricolmap-map"});
   refuses(describe("old", R"({"format": "agricolmap-map"})"), {"old/map.json", "version"});
-  refuses(describe("bare", R"({"format": "agricolmap-map", "format_version": 1})"),
+  refuses(describe("cut", R"({"format": "agricolmap-map", "format_version": 1})"),
+          {"cut/map.json", "damaged", "flat is missing"});
+  const std::string sources = R"("crs": null, "sources": [{"code": 1, "id": "fixed", "date": null,
+      "points": 7, "file": "a.laz"}]})";
+  refuses(describe("bare", R"({"format": "agricolmap-map", "format_version": 1, "flat": false, )" +
+                               sources),
           {"bare", "layers/surface.tif", "fuse"});
+  refuses(describe("flat",
+                   R"({"format": "agricolmap-map", "format_version": 1, "flat": true, )" + sources),
+          {"flat", "no heights"});
   std::filesystem::create_directories(inFolder("empty"));
   refuses(inFolder("empty"), {"empty", "map.json", "fuse"});
   refuses(inFolder("none"), {"none", "no such file"});

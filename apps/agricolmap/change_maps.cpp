@@ -37,7 +37,7 @@ ChangeMap::ChangeMap(const std::string& name, const std::optional<GivenError>& e
                      const char* flag)
     : name_(name), error_(error) {
   std::error_code ignored;
-  if (fs::is_directory(name, ignored)) folder_ = openMapFolder(name);
+  if (fs::is_directory(name, ignored)) folder_ = report::readSharedMap(name);
   shape_ = io::readLayerShape(surfaceFile());
   io::checkMetres(shape_.name, placeOf(shape_));
   if (!error_ && !(folder_ && folder_->layer("error"))) {
@@ -51,6 +51,10 @@ ChangeMap::ChangeMap(const std::string& name, const std::optional<GivenError>& e
 fs::path ChangeMap::surfaceFile() const {
   if (!folder_) return name_;
   if (const auto file = folder_->layer("surface")) return *file;
+  if (folder_->flat) {
+    throw InputError(fmt::format(
+        "{}: the clouds of this map have no heights, so that none can have changed", name_));
+  }
   throw InputError(fmt::format(
       "{}: has no layer layers/surface.tif; make the map anew with agricolmap fuse", name_));
 }

@@ -10,7 +10,7 @@
 #include "agricolmap/change/height_change.hpp"
 #include "agricolmap/core/raster.hpp"
 #include "agricolmap/io/raster/geo_reader.hpp"
-#include "map_folder.hpp"
+#include "agricolmap/report/json/shared_map_file.hpp"
 
 namespace agricolmap {
 
@@ -29,7 +29,7 @@ class ChangeMap {
 
   const std::string& name() const { return name_; }
   const io::LayerShape& surfaceShape() const { return shape_; }
-  const std::optional<MapFolder>& folder() const { return folder_; }
+  const std::optional<report::StoredMap>& folder() const { return folder_; }
   std::filesystem::path surfaceFile() const;
 
   /// All of it on `grid`, which is about `origin` and within this map.
@@ -51,8 +51,8 @@ class ChangeMap {
 
   std::string name_;
   std::optional<GivenError> error_;
-  std::optional<MapFolder> folder_;  ///< nothing for a file
-  io::LayerShape shape_;             ///< of its surface
+  std::optional<report::StoredMap> folder_;  ///< nothing for a file
+  io::LayerShape shape_;                     ///< of its surface
 };
 
 /// What two maps are compared on.

@@ -95,9 +95,15 @@ class JsonReader {
   std::string place_;
 };
 
-/// The document in a file of ours. Throws InputError when it is no JSON, its "format" is not
-/// `format` ("is no <kind>"), or its "format_version" is not 1.
-nlohmann::json readDocument(const std::filesystem::path& path, const std::string& format,
-                            const std::string& kind);
+/// One of our kinds of documents.
+struct DocumentKind {
+  std::string format;  ///< its "format"
+  std::string words;   ///< "shared map", for messages
+  std::string remedy;  ///< what to do where one is damaged
+};
+
+/// The document in a file of ours. Throws InputError when it is no JSON, of another kind, or its
+/// "format_version" is not 1.
+nlohmann::json readDocument(const std::filesystem::path& path, const DocumentKind& kind);
 
 }  // namespace agricolmap::report

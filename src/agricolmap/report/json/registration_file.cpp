@@ -103,7 +103,8 @@ StoredRegistration readRegistration(const std::filesystem::path& run) {
                     run.string(), path == run ? "such file or folder" : "registration.json in it"));
   }
   const std::string name = path.string();
-  const Json json = readDocument(path, "agricolmap-registration", "report of a registration");
+  const Json json = readDocument(
+      path, {"agricolmap-registration", "report of a registration", "register the pair again"});
   const JsonReader reader(json, name);
   return storedIn(reader, name);
 }

@@ -106,6 +106,7 @@ std::string sharedMapJson(const fuse::SharedMap& map, const MapFacts& facts,
   json["format"] = kFormat;
   json["format_version"] = 1;
   json["crs"] = crsJson(facts.crs);
+  json["flat"] = map.flat;
   json["frame"] = frameJson(map);
   json["sources"] = Json::array({sourceJson(facts.fixed, fuse::kFixedSource)});
   for (std::size_t i = 0; i < facts.strips.size(); ++i) {
@@ -123,6 +124,18 @@ std::string sharedMapJson(const fuse::SharedMap& map, const MapFacts& facts,
   return json.dump(2) + "\n";
 }
 
+std::optional<std::filesystem::path> StoredMap::layer(const std::string& name) const {
+  std::filesystem::path path = folder / "layers" / (name + ".tif");
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+  return path;
+}
+
+bool StoredMap::hasFixedOf(const StoredMap& other) const {
+  return fixed.file == other.fixed.file && fixed.date == other.fixed.date &&
+         fixed.points == other.fixed.points;
+}
+
 bool isSharedMap(const std::filesystem::path& folder) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(folder / kName, ignored);
@@ -130,9 +143,17 @@ bool isSharedMap(const std::filesystem::path& folder) {
 
 StoredMap readSharedMap(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / kName;
-  const nlohmann::json json = readDocument(path, kFormat, "shared map");
+  if (!isSharedMap(folder)) {
+    throw InputError(
+        fmt::format("{}: there is no {} in it, so it is no shared map; agricolmap fuse makes one",
+                    folder.string(), kName));
+  }
+  const nlohmann::json json =
+      readDocument(path, {kFormat, "shared map", "make the map anew with agricolmap fuse"});
   const JsonReader reader(json, path.string());
   StoredMap stored;
+  stored.folder = folder;
+  stored.flat = reader.at("flat").flag();
   if (const JsonReader crs = reader.at("crs"); !crs.isNull()) {
     stored.crs.name = crs.at("name").text();
     stored.crs.wkt = crs.at("wkt").text();

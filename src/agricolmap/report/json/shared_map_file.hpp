@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,17 +40,24 @@ struct MapFacts {
 std::string sharedMapJson(const fuse::SharedMap& map, const MapFacts& facts,
                           const fuse::FuseOptions& options);
 
-/// What of it an update needs.
+/// A shared map as it lies on the disk.
 struct StoredMap {
+  std::filesystem::path folder;
   Crs crs;
+  bool flat = false;  ///< its clouds have no heights, and it no layers of them
   MapSource fixed;
   std::vector<MapSource> strips;
+
+  /// layers/NAME.tif; nothing where the map has no such layer.
+  std::optional<std::filesystem::path> layer(const std::string& name) const;
+  /// Whether both hang on one fixed cloud: of one name, date and number of points.
+  bool hasFixedOf(const StoredMap& other) const;
 };
 
 /// Whether a folder holds a shared map.
 bool isSharedMap(const std::filesystem::path& folder);
 
-/// Throws InputError that names the file when it is missing, damaged or of another version.
+/// Throws InputError that names the file when it is missing, damaged, of another kind or version.
 StoredMap readSharedMap(const std::filesystem::path& folder);
 
 }  // namespace agricolmap::report
