@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "agricolmap/crop/facts.hpp"
-#include "agricolmap/crop/local_ground.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/vector/vector_layer.hpp"
+#include "agricolmap/map/soil_ground.hpp"
 #include "agricolmap/report/facts/facts_layers.hpp"
 #include "agricolmap/report/pictures/facts_picture.hpp"
 #include "common.hpp"
@@ -45,7 +45,9 @@ void bringToGround(FactsInput& input, const map::VegetationOptions& options) {
   if (input.above_ground) return;
   const crop::View view{input.frame, input.exg, input.height};
   const crop::Greenness greenness = crop::greennessOf(view, options);
-  if (greenness.known()) input.height = crop::heightAboveGround(view, greenness);
+  if (!greenness.known()) return;
+  const Raster<float> ground = map::soilGround(input.frame, input.height, greenness.green);
+  for (std::size_t i = 0; i < ground.size(); ++i) input.height[i] -= ground[i];
 }
 
 void writeFiles(const io::StagedOutput& output, const report::PlacedFacts& placed) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agricolmap/crop/local_ground.hpp"
 #include "agricolmap/crop/test_crop.hpp"
 
 namespace agricolmap::crop {
@@ -71,25 +70,6 @@ TEST(Facts, OfBareSoilAreNone) {
   const FieldFacts facts = factsOf(field.view(), {0.0, 0.0}, {}, {});
   EXPECT_FALSE(facts.greenness.known());
   EXPECT_TRUE(facts.rows.rows.empty());
-}
-
-TEST(LocalGround, FollowsASlopeUnderThePlants) {
-  TestField field = sownField();
-  for (int r = 0; r < field.frame.rows; ++r) {
-    for (int c = 0; c < field.frame.cols; ++c) {
-      const Eigen::Vector2d at = field.frame.centre(r, c);
-      field.height(r, c) += static_cast<float>(0.03 * at.x() + 0.02 * std::sin(at.y()));
-    }
-  }
-  const Greenness greenness = greennessOf(field.view());
-  const Raster<float> above = heightAboveGround(field.view(), greenness);
-  std::vector<double> plants;
-  for (std::size_t i = 0; i < above.size(); ++i) {
-    if (greenness.green[i] > 0.8F) plants.push_back(static_cast<double>(above[i]));
-  }
-  std::sort(plants.begin(), plants.end());
-  EXPECT_NEAR(plants[plants.size() / 2], 0.1, 0.005);
-  EXPECT_NEAR(plants[plants.size() / 20], 0.1, 0.02);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/fuse/adjustment.hpp"
-#include "agricolmap/fuse/ground.hpp"
 #include "agricolmap/fuse/owners.hpp"
 #include "agricolmap/fuse/strip_cells.hpp"
 #include "agricolmap/fuse/surface_map.hpp"
@@ -123,31 +122,6 @@ TEST(Owners, DoNotDependOnTheOrderOfStrips) {
   EXPECT_EQ(ownersOf(fixed, {{&deep, 2, 20260501, 0.01}, {&shallow, 3, 20260601, 0.05}})(1, 5), 3);
   const StripCells same = stripWith(0.2, 1, 4, 2, 5);
   EXPECT_EQ(ownersOf(fixed, {{&deep, 2, 0, 0.04}, {&same, 3, 0, 0.01}})(1, 5), 3);
-}
-
-TEST(Ground, LiesUnderPlantsAndFollowsSlopes) {
-  const GridFrame frame{Eigen::Vector2d::Zero(), 0.05, 200, 200};
-  Raster<float> surface(200, 200), cover(200, 200);
-  for (int r = 0; r < 200; ++r) {
-    for (int c = 0; c < 200; ++c) {
-      const bool plant = c % 10 < 6;
-      cover(r, c) = plant ? 1.0F : 0.0F;
-      surface(r, c) = 0.005F * static_cast<float>(c) + (plant ? 0.4F : 0.0F);  // 10 % of slope
-    }
-  }
-  const Raster<float> ground = groundOf(frame, surface, cover);
-  for (int c = 20; c < 180; ++c) EXPECT_NEAR(ground(100, c), 0.005 * c, 0.02) << c;
-}
-
-TEST(Ground, NobodyKnowsItUnderAClosedCanopy) {
-  const GridFrame frame{Eigen::Vector2d::Zero(), 0.05, 200, 400};
-  Raster<float> surface(200, 400, 0.5F), cover(200, 400, 1.0F);
-  for (int r = 0; r < 200; ++r) {
-    for (int c = 0; c < 20; ++c) surface(r, c) = cover(r, c) = 0.0F;
-  }
-  const Raster<float> ground = groundOf(frame, surface, cover);
-  EXPECT_NEAR(ground(100, 30), 0.0, 1e-3);
-  EXPECT_TRUE(std::isnan(ground(100, 300)));
 }
 
 /// Two strips of one field, the second of which is laid `off`.

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include "agricolmap/fuse/chamfer.hpp"
 
 namespace agricolmap::fuse {
 namespace {
@@ -74,24 +77,11 @@ class Left {
 /// Distance to the nearest cell that the strip saw [m], within a window.
 Raster<float> distanceTo(const StripCells& strip, int first_row, int first_col, int rows, int cols,
                          double cell) {
-  const float straight = static_cast<float>(cell), across = 1.4F * static_cast<float>(cell);
-  Raster<float> distance(rows, cols, std::numeric_limits<float>::max());
-  const auto at = [&](int r, int c) {
-    return distance.contains(r, c) ? distance(r, c) : std::numeric_limits<float>::max() / 2.0F;
-  };
-  const auto sweep = [&](int row, int col, int back) {
-    if (strip.seen(first_row + row, first_col + col)) return 0.0F;
-    return std::min({distance(row, col), at(row, col - back) + straight,
-                     at(row - back, col) + straight, at(row - back, col - back) + across,
-                     at(row - back, col + back) + across});
-  };
-  for (int row = 0; row < rows; ++row) {
-    for (int col = 0; col < cols; ++col) distance(row, col) = sweep(row, col, 1);
+  Raster<std::uint8_t> seen(rows, cols);
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < cols; ++c) seen(r, c) = strip.seen(first_row + r, first_col + c) ? 1 : 0;
   }
-  for (int row = rows - 1; row >= 0; --row) {
-    for (int col = cols - 1; col >= 0; --col) distance(row, col) = sweep(row, col, -1);
-  }
-  return distance;
+  return chamferDistance(seen, cell, std::numeric_limits<float>::max());
 }
 
 /// Leads the fixed cloud to one strip: adds to `correction`, weighted among strips.

@@ -10,11 +10,11 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/fuse/ground.hpp"
 #include "agricolmap/fuse/owners.hpp"
 #include "agricolmap/fuse/seam.hpp"
 #include "agricolmap/fuse/surface_map.hpp"
 #include "agricolmap/map/footprint.hpp"
+#include "agricolmap/map/soil_ground.hpp"
 
 namespace agricolmap::fuse {
 namespace {
@@ -263,7 +263,7 @@ void composeLayers(const FixedHeights& fixed, std::int32_t fixed_date, bool matc
   layers.source = ownersOf(fixed.map, claims);
   takeFixed(fixed, fixed_date, map, layers);
   for (FusedStrip& strip : map.strips) takeStrip(strip, match_colours, layers);
-  layers.ground = groundOf(layers.frame, layers.surface, layers.cover);
+  layers.ground = map::soilGround(layers.frame, layers.surface, layers.cover);
   layers.plant_height = layers.surface;
   for (std::size_t i = 0; i < layers.ground.size(); ++i) {
     layers.plant_height[i] -= layers.ground[i];
@@ -300,7 +300,7 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
 
   step("heights");
   const Raster<float> cover = coverOf(drone, map.fixed_greenness);
-  const Raster<float> ground = groundOf(map.lattice.frame, surfaceOf(drone), cover);
+  const Raster<float> ground = map::soilGround(map.lattice.frame, surfaceOf(drone), cover);
   const FixedHeights heights{drone, ground, cover};
   if (options.correct_heights && !map.flat) {
     map.bias = heightBiasOf(heights, measuredOf(inputs, map.strips));

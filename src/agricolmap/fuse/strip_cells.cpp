@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "agricolmap/core/robust.hpp"
+#include "agricolmap/fuse/chamfer.hpp"
 #include "agricolmap/fuse/surface_map.hpp"
 
 namespace agricolmap::fuse {
@@ -66,25 +67,10 @@ Mask seenCells(const map::GridMap& coarse, double least_seen) {
   return seen;
 }
 
-/// Chamfer distances to the nearest cell that is not set; beyond the raster none is.
-Raster<float> depthOf(const Mask& seen, double cell) {
-  const float straight = static_cast<float>(cell), across = 1.4F * static_cast<float>(cell);
-  Raster<float> depth(seen.rows(), seen.cols());
-  const auto at = [&](int r, int c) { return depth.contains(r, c) ? depth(r, c) : 0.0F; };
-  const auto sweep = [&](int row, int col, int back) {
-    if (seen(row, col) == 0) return 0.0F;
-    return std::min({at(row, col - back) + straight, at(row - back, col) + straight,
-                     at(row - back, col - back) + across, at(row - back, col + back) + across});
-  };
-  for (int row = 0; row < seen.rows(); ++row) {
-    for (int col = 0; col < seen.cols(); ++col) depth(row, col) = sweep(row, col, 1);
-  }
-  for (int row = seen.rows() - 1; row >= 0; --row) {
-    for (int col = seen.cols() - 1; col >= 0; --col) {
-      depth(row, col) = std::min(depth(row, col), sweep(row, col, -1));
-    }
-  }
-  return depth;
+Mask inverted(const Mask& mask) {
+  Mask out(mask.rows(), mask.cols());
+  for (std::size_t i = 0; i < mask.size(); ++i) out[i] = mask[i] == 0 ? 1 : 0;
+  return out;
 }
 
 }  // namespace
@@ -105,7 +91,8 @@ StripCells stripCells(const PointStream& cloud, const Eigen::Vector3d& shift,
   cells.row = begin[0];
   cells.col = begin[1];
   cells.coarse = coarsened(fineCells(cloud, shift, lattice), lattice.factor);
-  cells.depth = depthOf(seenCells(cells.coarse, least_seen), lattice.frame.cell);
+  cells.depth =
+      chamferDistance(inverted(seenCells(cells.coarse, least_seen)), lattice.frame.cell, 0.0F);
   return cells;
 }
 

@@ -8,6 +8,7 @@
 
 #include "agricolmap/core/robust.hpp"
 #include "agricolmap/report/draw/page.hpp"
+#include "agricolmap/report/draw/ramp.hpp"
 
 namespace agricolmap::report {
 namespace {
@@ -24,21 +25,7 @@ constexpr Colour kUnsure = hexColour(0xb4b8be);
 constexpr std::uint32_t kEmpty = 0xffffff;
 
 /// Of a change in units of the reach.
-std::uint32_t colourOf(double change) {
-  constexpr std::array<std::array<double, 3>, 5> kStops = {{{0x8c, 0x51, 0x0a},
-                                                            {0xd8, 0xb3, 0x65},
-                                                            {0xf5, 0xf5, 0xf5},
-                                                            {0x5a, 0xb4, 0xac},
-                                                            {0x01, 0x66, 0x5e}}};
-  const double at = std::clamp(2.0 * (change + 1.0), 0.0, 4.0);
-  const auto below = std::min<std::size_t>(3, static_cast<std::size_t>(at));
-  const double share = at - static_cast<double>(below);
-  std::array<int, 3> rgb{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    rgb[i] = static_cast<int>((1.0 - share) * kStops[below][i] + share * kStops[below + 1][i]);
-  }
-  return packPixel(rgb[0], rgb[1], rgb[2]);
-}
+std::uint32_t colourOf(double change) { return rampColour(kFallToRise, 0.5 * (change + 1.0)); }
 
 /// What the colours reach to: a round number that nearly all changes are within [m].
 double reachOf(const change::HeightChange& change) {

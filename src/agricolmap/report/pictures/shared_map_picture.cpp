@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "agricolmap/core/robust.hpp"
 #include "agricolmap/report/draw/page.hpp"
+#include "agricolmap/report/draw/ramp.hpp"
 
 namespace agricolmap::report {
 namespace {
@@ -21,23 +21,6 @@ constexpr int kZoomHeight = 300;
 constexpr double kZoom = 1.2;  // half of what the panels of a border show [m]
 
 const Colour kBorder = hexColour(0xff9f1c);
-
-/// From low to high, even to the eye and to those who cannot tell red from green (viridis).
-std::uint32_t heightColour(double share) {
-  struct Stop {
-    double r, g, b;
-  };
-  static constexpr std::array<Stop, 6> kStops{
-      {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}, {253, 231, 37}}};
-  const double at = std::clamp(share, 0.0, 1.0) * (kStops.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
-  const double part = at - static_cast<double>(low);
-  const auto mix = [&](double a, double b) {
-    return static_cast<int>(std::lround(a + part * (b - a)));
-  };
-  const Stop &a = kStops[low], &b = kStops[low + 1];
-  return packPixel(mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b));
-}
 
 /// The height that hardly a plant surpasses [m].
 double tallest(const fuse::Layers& layers) {
@@ -101,7 +84,7 @@ void paintValues(PictureCanvas& canvas, const View& view, const fuse::Layers& la
   paintCells(canvas, view, layers.frame, [&](int row, int col) -> std::optional<std::uint32_t> {
     const double value = shown.values(row, col);
     if (std::isnan(value)) return std::nullopt;
-    return heightColour((value - shown.low) / (shown.high - shown.low));
+    return rampColour(kLowToHigh, (value - shown.low) / (shown.high - shown.low));
   });
 }
 
@@ -157,7 +140,7 @@ void drawScale(PictureCanvas& canvas, const PixelRect& under, const Values& show
   constexpr int kWidth = 200, kHeight = 12;
   const PixelRect bar{under.x, under.y + under.height + 10, kWidth, kHeight};
   canvas.paint(bar, [&](int, std::uint32_t* out) {
-    for (int i = 0; i < bar.width; ++i) out[i] = heightColour((i + 0.5) / bar.width);
+    for (int i = 0; i < bar.width; ++i) out[i] = rampColour(kLowToHigh, (i + 0.5) / bar.width);
   });
   canvas.frame(bar, {1.0, hexColour(0x8a9099), {}});
   canvas.text({bar.x + bar.width + 8.0, bar.y + 11.0}, shown.legend,

@@ -3,16 +3,16 @@
 
 #include "agricolmap/core/raster.hpp"
 
-namespace agricolmap::fuse {
+namespace agricolmap::map {
 
 /// Farther than this from all soil that is seen nobody knows the ground [m].
-inline constexpr double kGroundReach = 2.0;
+inline constexpr double kSoilReach = 2.0;
 
-/// Ground height of every cell, NaN where no soil is seen within kGroundReach. `surface`: heights,
+/// Ground height of every cell, NaN where no soil is seen within kSoilReach. `surface`: heights,
 /// NaN where there is none; `cover`: share of vegetation 0…1, NaN where nobody knows: such cells
 /// count as soil only where they are the lowest around. Low quantiles of the soil in squares of a
 /// quarter metre, those far above their neighbours left out, with smooth filling between.
-Raster<float> groundOf(const GridFrame& frame, const Raster<float>& surface,
-                       const Raster<float>& cover);
+Raster<float> soilGround(const GridFrame& frame, const Raster<float>& surface,
+                         const Raster<float>& cover);
 
-}  // namespace agricolmap::fuse
+}  // namespace agricolmap::map

@@ -1,4 +1,4 @@
-#include "agricolmap/fuse/ground.hpp"
+#include "agricolmap/map/soil_ground.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/robust.hpp"
 
-namespace agricolmap::fuse {
+namespace agricolmap::map {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -120,12 +120,12 @@ Raster<float> filled(const Raster<float>& heights, int levels) {
 
 }  // namespace
 
-Raster<float> groundOf(const GridFrame& frame, const Raster<float>& surface,
-                       const Raster<float>& cover) {
+Raster<float> soilGround(const GridFrame& frame, const Raster<float>& surface,
+                         const Raster<float>& cover) {
   constexpr int kAround = 3;
   const Squares squares = squaresOf(frame, surface, cover);
   const double side = squares.step * frame.cell;
-  const int levels = std::max(1, static_cast<int>(std::lround(std::log2(kGroundReach / side))));
+  const int levels = std::max(1, static_cast<int>(std::lround(std::log2(kSoilReach / side))));
   const Raster<float> ground = filled(withoutHigh(squares.height, kAround), levels);
   Raster<float> out(frame.rows, frame.cols, kNone);
   parallelFor(static_cast<std::size_t>(frame.rows), [&](std::size_t row) {
@@ -141,4 +141,4 @@ Raster<float> groundOf(const GridFrame& frame, const Raster<float>& surface,
   return out;
 }
 
-}  // namespace agricolmap::fuse
+}  // namespace agricolmap::map
