@@ -179,7 +179,11 @@ TEST_F(BatchTest, MisuseIsToldBeforeAnythingIsDone) {
   const std::string out = inFolder("out");
   expectFailure({"batch"}, 2, {"MANIFEST", "-o"});
   expectFailure({"batch", file}, 2, {"-o"});
-  expectFailure({"batch", inFolder("none.yaml"), "-o", out}, 3, {"none.yaml"});
+  expectFailure({"batch", inFolder("none.yaml"), "-o", out}, 3, {"none.yaml", "no such file"});
+  expectFailure({"batch", inFolder(""), "-o", out}, 3, {"is a folder", "YAML"});
+  expectFailure({"batch", file, "-o", write("taken", "mine")}, 4, {"taken: is a file"});
+  EXPECT_EQ(contentOf(inFolder("taken")), "mine");
+  EXPECT_EQ(entries().count("out"), 0U);
   expectFailure({"batch", file, "-o", out, "--shard", "3/2"}, 2, {"--shard 3/2"});
   expectFailure({"batch", file, "-o", out, "--shard", "0/2"}, 2, {"--shard 0/2"});
   expectFailure({"batch", file, "-o", out, "--shard", "1"}, 2, {"--shard 1"});

@@ -124,6 +124,15 @@ TEST_F(DiffTest, FindsWhatGrewAndNothingElse) {
   EXPECT_GT(json["cover"]["mean_change"], 0.0);
 }
 
+TEST_F(DiffTest, NothingIsNotCalledNegative) {
+  Field lower;
+  lower.heights_off = -0.0002;
+  const ProgramResult result =
+      run({"diff", writeMap("june", {}), writeMap("july", lower), "-o", inFolder("out")});
+  EXPECT_NE(result.out.find("by 0.0 +- "), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("-0.0 "), std::string::npos) << result.out;
+}
+
 TEST_F(DiffTest, InfoSaysWhatAMapIsMadeOf) {
   const std::string out = run({"info", writeMap("june", {})}).out;
   for (const char* part : {"UTM zone 32N", "sources    1", "fixed, june.laz",

@@ -130,6 +130,13 @@ TEST_F(FactsTest, WhatCannotBeUsedIsNamed) {
   expectFailure({"facts", cloud, "-o", out, "--plots", inFolder("none.gpkg")}, 3, {"none.gpkg"});
   const std::string text = write("plots.txt", "no polygons here");
   expectFailure({"facts", cloud, "-o", out, "--plots", text}, 3, {"plots.txt", "GeoPackage"});
+  const std::string elsewhere =
+      write("elsewhere.geojson", R"({"type":"FeatureCollection","crs":{"type":"name","properties":
+      {"name":"urn:ogc:def:crs:EPSG::32633"}},"features":[{"type":"Feature","properties":{},
+      "geometry":{"type":"Polygon","coordinates":[[[1,1],[9,1],[9,9],[1,9],[1,1]]]}}]})");
+  expectFailure(
+      {"facts", cloud, "-o", out, "--crs", "EPSG:32633", "--plots", elsewhere, "--no-pictures"}, 3,
+      {"elsewhere.geojson", "point_cloud.ply", "nothing of its 1 plots", "coordinate system"});
   expectFailure({"facts", cloud, "-o", out, "--grid", "0"}, 2, {"grid"});
   EXPECT_EQ(entries().count("facts"), 0U);
 }

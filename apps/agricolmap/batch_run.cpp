@@ -191,6 +191,8 @@ void Batch::removeLeftovers(const std::vector<std::size_t>& strips) const {
 
 void Batch::run(const std::vector<std::size_t>& strips, bool grounds) {
   const std::vector<std::size_t> left = keepFinished(strips);
+  // Before hours of work of which nothing could be kept.
+  if (!left.empty()) std::ignore = io::StagedOutput(options_.output, true);
   removeLeftovers(strips);
   todo_ = left.size();
   watch_ = {};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "agricolmap/io/output/file_sink.hpp"
@@ -44,11 +45,19 @@ void writeBands(const io::OutputPath& path, const MapChange& found,
   io::writeLayer(path, layer);
 }
 
-/// "12.3 m2, 1.20 m3 (0.80 to 1.60)".
+/// Without the sign of what is rounded to nothing.
+std::string rounded(double value, int digits) {
+  const double unit = std::pow(10.0, digits);
+  return fmt::format("{:.{}f}", std::round(value * unit) / unit + 0.0, digits);
+}
+
+/// "12.3 m2, 1.20 m3 (0.80 to 1.60)"; of little, more digits.
 std::string describe(const change::Share& share) {
   const double half = change::kLevel95 * share.deviation;
-  return fmt::format("{:.1f} m2, {:.2f} m3 ({:.2f} to {:.2f})", share.area, share.volume,
-                     share.volume - half, share.volume + half);
+  const int digits = std::abs(share.volume) + half < 0.1 ? 4 : 2;
+  return fmt::format("{} m2, {} m3 ({} to {})", rounded(share.area, share.area < 1.0 ? 3 : 1),
+                     rounded(share.volume, digits), rounded(share.volume - half, digits),
+                     rounded(share.volume + half, digits));
 }
 
 }  // namespace
@@ -81,10 +90,10 @@ ordered_json toJson(const MapChange& found) {
 
 std::vector<ChangeLine> describe(const MapChange& found) {
   const change::Totals& totals = found.totals;
-  const auto centimetres = [](double metres) { return fmt::format("{:.1f} cm", 100.0 * metres); };
-  const auto average = [](const change::Share& share) {
-    return fmt::format("by {:.1f} +- {:.1f} cm on average", 100.0 * share.mean(),
-                       100.0 * change::kLevel95 * share.meanDeviation());
+  const auto centimetres = [](double metres) { return rounded(100.0 * metres, 1) + " cm"; };
+  const auto average = [&](const change::Share& share) {
+    return fmt::format("by {} +- {} on average", rounded(100.0 * share.mean(), 1),
+                       centimetres(change::kLevel95 * share.meanDeviation()));
   };
   const auto significant = [&](const change::Share& share) {
     if (share.cells == 0) return std::string("nowhere by more than its errors");

@@ -173,7 +173,8 @@ ExitCode runBatch(const BatchArguments& arguments, const Globals& globals) {
     counts.add(*outcomes.back()->record);
   }
   if (!globals.quiet) {
-    fmt::print("{} strips: {}; results in {}\n", counts.all(), toText(counts), arguments.output);
+    fmt::print("{} strip{}: {}; results in {}\n", counts.all(), counts.all() == 1 ? "" : "s",
+               toText(counts), arguments.output);
   }
   return exitCodeFor(outcomes);
 }

@@ -1,6 +1,7 @@
 // agricolmap facts MAP -o DIR: what stands on the field, counted and measured.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "agricolmap/crop/facts.hpp"
@@ -38,6 +39,17 @@ std::vector<crop::Plot> readPlots(const std::string& path, const FactsInput& inp
     plots.push_back({std::move(polygon.id), std::move(polygon.corners)});
   }
   return plots;
+}
+
+/// Plots of another field, or in another system than they say, would count nothing and look as if
+/// nothing stood there.
+void requirePlotsOnMap(const FactsArguments& arguments, const crop::FieldFacts& facts) {
+  const auto shows = [](const crop::StandFacts& plot) { return plot.area > 0.0; };
+  if (facts.per_plot.empty() || std::ranges::any_of(facts.per_plot, shows)) return;
+  throw InputError(
+      fmt::format("{}: {} shows nothing of its {} plots; give those of this field, and see that "
+                  "their coordinate system is the one that the file says",
+                  arguments.plots, arguments.map, facts.per_plot.size()));
 }
 
 /// Heights above the soil that the map shows, unless they are that already.
@@ -78,6 +90,7 @@ ExitCode runFacts(const FactsArguments& arguments, const Globals& globals) {
     throw InputError(fmt::format("{}: no crop facts: {}", arguments.map,
                                  map::toString(facts.greenness.threshold.status)));
   }
+  requirePlotsOnMap(arguments, facts);
   const report::PlacedFacts placed{facts, input.origin, plots, input.crs, arguments.map};
   progress.step("write");
   writeFiles(output, placed);

@@ -103,10 +103,10 @@ report::MapFacts writeMap(const io::SwappedFolder& folder, const MapPlan& plan,
 void printSummary(const fuse::SharedMap& map, const report::MapFacts& facts,
                   const std::string& output) {
   fmt::print(
-      "{} strips in a map of {:.0f} x {:.0f} m, cells of {:.3g} m and, in strips, {:.3g} m\n",
-      map.strips.size(), map.layers.frame.cols * map.layers.frame.cell,
-      map.layers.frame.rows * map.layers.frame.cell, map.layers.frame.cell,
-      map.layers.frame.cell / map.lattice.factor);
+      "{} strip{} in a map of {:.0f} x {:.0f} m, cells of {:.3g} m and, in strips, {:.3g} m\n",
+      map.strips.size(), map.strips.size() == 1 ? "" : "s",
+      map.layers.frame.cols * map.layers.frame.cell, map.layers.frame.rows * map.layers.frame.cell,
+      map.layers.frame.cell, map.layers.frame.cell / map.lattice.factor);
   for (std::size_t i = 0; i < map.strips.size(); ++i) {
     const fuse::FusedStrip& strip = map.strips[i];
     std::string more;

@@ -336,7 +336,11 @@ Manifest readManifest(const fs::path& file) {
   // Of an empty file nothing can be read.
   const bool empty = stream && stream.peek() == std::ifstream::traits_type::eof();
   if (!stream || fs::is_directory(file) || (!empty && !(text << stream.rdbuf()))) {
-    throw InputError(fmt::format("{}: cannot read this manifest", file.string()));
+    const char* const why = !fs::exists(file)        ? "there is no such file"
+                            : fs::is_directory(file) ? "is a folder"
+                                                     : "cannot be read";
+    throw InputError(fmt::format("{}: {}; name a manifest, a YAML file that lists maps and strips",
+                                 file.string(), why));
   }
   const YAML::Node root =
       config::parseYaml(text.str(), file.string(), "a manifest; put all strips into one");

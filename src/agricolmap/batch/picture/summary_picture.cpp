@@ -121,7 +121,7 @@ void writeSummaryPicture(const io::OutputPath& path, std::span<const MapGround> 
     height += kTitleRoom + panelOf(ground, 0).height + kPanelGap;
   }
   const Counts counts = countsOf(records);
-  Page page(height, fmt::format("{} strips", records.size()),
+  Page page(height, fmt::format("{} strip{}", records.size(), records.size() == 1 ? "" : "s"),
             toText(counts) + (counts.failed > 0 ? "; those that failed are not drawn" : ""),
             {verdict::Status::kAccepted, {}}, false);
   int top = page.top;

@@ -25,7 +25,7 @@ std::uint64_t pointBytes(bool coloured) {
 
 std::string purposeOf(const CloudFacts& facts) {
   return fmt::format(
-      "{}: its points, sorted by place, need {:.1f} GiB for a while in {}", facts.name,
+      "{}: its points, sorted by place, need {:.3g} GiB for a while in {}", facts.name,
       static_cast<double>(facts.points * pointBytes(facts.coloured)) / kGiB, scratchFolder());
 }
 

@@ -34,10 +34,10 @@ double cellOf(const std::string& name, const Eigen::Affine2d& world_from_pixel) 
   const double cell = m(0, 0);
   const double off = std::max({std::abs(m(0, 1)), std::abs(m(1, 0)), std::abs(m(1, 1) + cell)});
   if (cell > 0.0 && off <= kSquareTolerance * cell) return cell;
-  throw InputError(fmt::format(
-      "{}: its cells are not square or not north up ({:g} by {:g}); bring it onto such a grid with "
-      "gdalwarp -tr CELL CELL",
-      name, m.col(0).norm(), m.col(1).norm()));
+  throw InputError(
+      fmt::format("{}: its cells are not square or not north up ({:.9g} by {:.9g}); bring it "
+                  "onto such a grid with gdalwarp -tr CELL CELL",
+                  name, m.col(0).norm(), m.col(1).norm()));
 }
 
 LayerShape shapeOf(GDALDataset& dataset, const std::string& name) {

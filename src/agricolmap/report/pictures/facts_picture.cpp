@@ -112,9 +112,16 @@ void drawWords(PictureCanvas& canvas, Eigen::Vector2d at, const PlacedFacts& pla
   using Kind = LegendItem::Kind;
   std::vector<LegendItem> items = {{Kind::kLine, kGapColour, "gap", {}},
                                    {Kind::kLine, kTouchColour, "cannot be counted", {}},
-                                   {Kind::kSquare, kWeedColour, "weeds between the rows", {}},
-                                   {Kind::kHatch, {}, "not seen", {}}};
+                                   {Kind::kSquare, kWeedColour, "weeds between the rows", {}}};
   drawLegend(canvas, at, items, true);
+  // As the map has it, which is paler than the hatching of the legends' own.
+  const double below = at.y() + 24.0 * static_cast<double>(items.size());
+  const PixelRect key{static_cast<int>(at.x()), static_cast<int>(below) - 12, 26, 15};
+  canvas.paint(key, [&](int y, std::uint32_t* row) {
+    for (int i = 0; i < key.width; ++i) row[i] = lightHatch(key.x + i, y);
+  });
+  canvas.frame(key, {1.0, hexColour(0x8a9099), {}});
+  canvas.text({at.x() + 34.0, below}, "not seen", {});
 }
 
 }  // namespace

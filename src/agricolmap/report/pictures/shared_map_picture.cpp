@@ -226,11 +226,11 @@ void writeSharedMapPicture(const io::OutputPath& path, const fuse::SharedMap& ma
   const fuse::Layers& layers = map.layers;
   const std::optional<Border> near = borderOf(map);
   Layout layout = layoutOf(layers, near.has_value());
-  Page page(
-      layout.height, name,
-      fmt::format("{} strips in a drone's map of {:.0f} x {:.0f} m", map.strips.size(),
-                  layers.frame.cols * layers.frame.cell, layers.frame.rows * layers.frame.cell),
-      {verdict::Status::kAccepted, {}}, false);
+  Page page(layout.height, name,
+            fmt::format("{} strip{} in a drone's map of {:.0f} x {:.0f} m", map.strips.size(),
+                        map.strips.size() == 1 ? "" : "s", layers.frame.cols * layers.frame.cell,
+                        layers.frame.rows * layers.frame.cell),
+            {verdict::Status::kAccepted, {}}, false);
   for (PixelRect* rect :
        {&layout.colours, &layout.heights, &layout.near_colours, &layout.near_heights}) {
     rect->y += page.top;
