@@ -73,6 +73,15 @@ TEST(Facts, OfBareSoilAreNone) {
   EXPECT_TRUE(facts.rows.rows.empty());
 }
 
+TEST(LocalGround, OfAViewWithoutHeightsThereAreNone) {
+  TestField field = sownField();
+  field.height = Raster<float>();
+  EXPECT_TRUE(heightAboveGround(field.view(), greennessOf(field.view())).empty());
+  const FieldFacts facts = factsOf(field.view(), {0.0, 0.0}, {}, {});
+  EXPECT_TRUE(facts.countable);
+  EXPECT_TRUE(std::isnan(facts.total.height.middle));
+}
+
 TEST(LocalGround, FollowsASlopeUnderThePlants) {
   TestField field = sownField();
   for (int r = 0; r < field.frame.rows; ++r) {

@@ -45,6 +45,7 @@ void fillSquares(Raster<float>& squares) {
 
 Raster<float> heightAboveGround(const View& view, const Greenness& greenness,
                                 const GroundOptions& options) {
+  if (view.height.empty()) return {};
   const GridFrame& frame = view.frame;
   const int side = std::max(1, static_cast<int>(std::lround(options.tile / frame.cell)));
   GridFrame coarse = frame;

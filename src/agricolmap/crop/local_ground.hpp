@@ -11,7 +11,7 @@ struct GroundOptions {
 
 /// Heights less the ground's, which is the median of what is surely bare in each square, bilinear
 /// between their centres; squares that show too little soil take their neighbours'. NaN where the
-/// view has no height.
+/// view has no height, empty where it has none at all.
 Raster<float> heightAboveGround(const View& view, const Greenness& greenness,
                                 const GroundOptions& options = {});
 
