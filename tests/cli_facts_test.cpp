@@ -107,6 +107,26 @@ TEST_F(FactsTest, PlantsWhoseLeavesTouchAreNotCounted) {
   EXPECT_GT(json["rows"]["count"], 20);
 }
 
+TEST_F(FactsTest, OfAFlatCloudSayNoHeights) {
+  // Rows 0.5 m apart of plants 0.2 m apart; heights of an orthomosaic without a surface model.
+  std::ostringstream points;
+  for (int row = 0; row < 200; ++row) {
+    for (int col = 0; col < 200; ++col) {
+      const int across = (row % 25) - 12;
+      const int along = (col % 10) - 5;
+      const bool plant = across * across + along * along < 8;
+      const char* soil = (row + col) % 2 == 0 ? "120 100 80" : "124 102 80";
+      points << 0.02 * col << ' ' << 0.02 * row << " 0 " << (plant ? "80 140 60" : soil) << '\n';
+    }
+  }
+  const std::string cloud = write("flat.xyz", points.str());
+  const ProgramResult result = run({"facts", cloud, "-o", inFolder("facts"), "--no-pictures"});
+  EXPECT_EQ(result.out.find("plant height"), std::string::npos) << result.out;
+  const auto json = jsonOf(inFolder("facts/facts.json"));
+  EXPECT_TRUE(json["total"]["height_m"]["p50"].is_null());
+  EXPECT_NEAR(json["rows"]["spacing_m"], 0.5, 0.02);
+}
+
 TEST_F(FactsTest, OfASharedMapSeeTheStripsInTheirOwnCells) {
   run({"fuse", pair("strips").uav(), pair("strips").folder.parent_path() / "runs/strip_1", "-o",
        inFolder("map"), "--cloud-format", "none", "--no-pictures"});

@@ -52,9 +52,9 @@ void requirePlotsOnMap(const FactsArguments& arguments, const crop::FieldFacts& 
                   arguments.plots, arguments.map, facts.per_plot.size()));
 }
 
-/// Heights above the soil that the map shows, unless they are that already.
+/// Heights above the soil that the map shows, unless they are that already or there are none.
 void bringToGround(FactsInput& input, const map::VegetationOptions& options) {
-  if (input.above_ground) return;
+  if (input.above_ground || input.height.empty()) return;
   const crop::View view{input.frame, input.exg, input.height};
   const crop::Greenness greenness = crop::greennessOf(view, options);
   if (!greenness.known()) return;

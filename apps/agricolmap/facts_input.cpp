@@ -208,10 +208,13 @@ FactsInput readCloudInput(const std::string& path, const std::string& given, Pro
     gridded.exg[i] = kNone;
     gridded.height[i] = kNone;
   }
+  // An orthomosaic without a surface model is laid flat: that is no plants of no height.
+  if (map::hasRelief(gridded)) {
+    fillBetween(gridded.height);
+    input.height = std::move(gridded.height);
+  }
   fillBetween(gridded.exg);
-  fillBetween(gridded.height);
   input.exg = std::move(gridded.exg);
-  input.height = std::move(gridded.height);
   return input;
 }
 

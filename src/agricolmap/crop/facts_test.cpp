@@ -72,5 +72,13 @@ TEST(Facts, OfBareSoilAreNone) {
   EXPECT_TRUE(facts.rows.rows.empty());
 }
 
+TEST(Facts, OfAViewWithoutHeightsThereAreNone) {
+  TestField field = sownField();
+  field.height = Raster<float>();
+  const FieldFacts facts = factsOf(field.view(), {0.0, 0.0}, {}, {});
+  EXPECT_TRUE(facts.countable);
+  EXPECT_TRUE(std::isnan(facts.total.height.middle));
+}
+
 }  // namespace
 }  // namespace agricolmap::crop

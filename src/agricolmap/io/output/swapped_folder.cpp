@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
+#include <charconv>
 #include <system_error>
 
 #include "agricolmap/core/error.hpp"
@@ -41,8 +41,10 @@ int lockedFolder(const fs::path& folder, const fs::path& asked) {
 
 /// Whether the run that made this hidden folder is no more.
 bool isLeftOver(const std::string& hidden) {
-  const int pid = std::atoi(hidden.c_str() + hidden.rfind(".partial-") + sizeof(".partial-") - 1);
-  return pid > 0 && ::kill(pid, 0) != 0 && errno == ESRCH;
+  const char* digits = hidden.c_str() + hidden.rfind(".partial-") + sizeof(".partial-") - 1;
+  int pid = 0;
+  const auto parsed = std::from_chars(digits, hidden.c_str() + hidden.size(), pid);
+  return parsed.ec == std::errc() && pid > 0 && ::kill(pid, 0) != 0 && errno == ESRCH;
 }
 
 /// Removes what killed runs left, and puts back what one of them had set aside.
