@@ -111,6 +111,22 @@ TEST(Options, ListEverythingThatCanBeSet) {
   for (const std::string& preset : Options::presets()) EXPECT_NO_THROW(Options{preset});
 }
 
+TEST(Options, TellTheKindsAndLimitsOfValues) {
+  const std::vector<OptionInfo> infos = Options("paper").list();
+  const auto find = [&](const std::string& name) {
+    return *std::find_if(infos.begin(), infos.end(),
+                         [&](const OptionInfo& info) { return info.name == name; });
+  };
+  EXPECT_EQ(find("grid.cell").kind, OptionInfo::Kind::kNumber);
+  EXPECT_EQ(find("grid.cell").low, 0.005);
+  EXPECT_EQ(find("grid.cell").high, 1.0);
+  EXPECT_EQ(find("seed").kind, OptionInfo::Kind::kInteger);
+  EXPECT_EQ(find("geometry_only").kind, OptionInfo::Kind::kFlag);
+  EXPECT_EQ(find("refine").kind, OptionInfo::Kind::kChoice);
+  EXPECT_EQ(find("refine").choices, (std::vector<std::string>{"dense", "cpd"}));
+  EXPECT_EQ(Options("paper").preset(), "paper");
+}
+
 TEST(Options, KnowThePrior) {
   Options options;
   EXPECT_EQ(options.prior().translation_m, 5.0);
@@ -190,6 +206,22 @@ TEST(Files, GoOutAndComeBack) {
   expectError<InputError>([&] { readCloud(folder / "none.ply"); }, "none.ply", ErrorKind::kInput);
   expectError<OutputError>([&] { writePly(folder / "none/cloud.ply", cloud); }, "none",
                            ErrorKind::kOutput);
+}
+
+TEST(Files, AreWrittenInTheFormatThatTheirNameEndsWith) {
+  const std::filesystem::path folder = freshFolder("formats");
+  const std::vector<Eigen::Vector3d> points = {{500000.5, 1.0, 2.0}, {500001.25, 2.0, 3.0}};
+  const std::vector<Rgb> colours = {{1, 2, 3}, {4, 5, 6}};
+  const Cloud cloud = makeCloud(points, colours);
+  for (const char* const name : {"cloud.ply", "cloud.pcd", "cloud.las"}) {
+    writeCloud(folder / name, cloud, Transform(Eigen::Translation3d(0.0, 1.0, 0.0)));
+    const Cloud read = readCloud(folder / name);
+    ASSERT_EQ(read.size(), 2U) << name;
+    EXPECT_LT((read.filePoint(1) - Eigen::Vector3d(500001.25, 3.0, 3.0)).norm(), 1e-6) << name;
+    EXPECT_EQ(read.rgb[1], colours[1]) << name;
+  }
+  expectError<UsageError>([&] { writeCloud(folder / "cloud.stl", cloud); }, "las",
+                          ErrorKind::kUsage);
 }
 
 TEST(RegisterClouds, FindsThePlaceAndSaysHowSureItIs) {

@@ -33,6 +33,13 @@ AGRICOLMAP_EXPORT void writePly(const std::filesystem::path& path, const Cloud& 
 AGRICOLMAP_EXPORT void writePly(const std::filesystem::path& path, const Cloud& cloud,
                                 const Transform& target_from_file);
 
+/// Writes binary PLY or PCD, LAS, LAZ or COPC (`.copc.laz`), as the file's name ends, after moving
+/// every point: file coordinates → target file coordinates. LAS is in millimetres and has a place
+/// for the coordinate system. Throws UsageError for another ending, and for LAZ in a build without
+/// LASzip; OutputError as writePly does.
+AGRICOLMAP_EXPORT void writeCloud(const std::filesystem::path& path, const Cloud& cloud,
+                                  const Transform& target_from_file = Transform::Identity());
+
 /// Reads a 4×4 matrix: 16 numbers, row-major, last row 0 0 0 1, invertible. Commas, brackets and
 /// `#` comments are fine, and so is PDAL's JSON. Throws InputError.
 AGRICOLMAP_EXPORT Transform readMatrix(const std::filesystem::path& path);
@@ -54,5 +61,30 @@ AGRICOLMAP_EXPORT std::optional<Transform> readOffsetBeside(const std::filesyste
 /// georeferenced in metres, their coordinate systems differ or they do not overlap.
 AGRICOLMAP_EXPORT Cloud readOrthomosaic(const std::filesystem::path& ortho,
                                         const std::filesystem::path& surface_model);
+
+/// Component gdal. The coordinate system of a map's file where the file does not say it, or is
+/// wrong: a code as EPSG:32632, WKT, PROJ's text or a file with one of these. Empty: what the file
+/// says, or a `.prj` beside it.
+struct MapFile {
+  std::string path;  ///< of a cloud, an orthomosaic, or ORTHO.tif,DSM.tif
+  std::string crs = {};
+};
+
+/// Two maps in one frame.
+struct CloudPair {
+  Cloud fixed;
+  Cloud moving;
+};
+
+/// Component gdal. Reads both maps of a registration into the coordinate system of the fixed one,
+/// in metres, as the command line does: feet are turned into metres, another projection into that
+/// of the fixed one. What was assumed is among the moving cloud's warnings. Throws InputError as
+/// readCloud and readOrthomosaic do and when neither file is projected, UsageError for a system
+/// that is not understood.
+AGRICOLMAP_EXPORT CloudPair readPair(const MapFile& fixed, const MapFile& moving);
+
+/// Component gdal. The same of one map. `target`: as MapFile::crs, into which it is brought; empty:
+/// it stays in its own, in metres.
+AGRICOLMAP_EXPORT Cloud readMap(const MapFile& file, const std::string& target = {});
 
 }  // namespace agricolmap

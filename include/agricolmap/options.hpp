@@ -23,12 +23,23 @@ struct Prior {
 
 /// One option, for those who list them.
 struct OptionInfo {
+  enum class Kind {
+    kNumber,
+    kInteger,
+    kFlag,    ///< "true" or "false"
+    kChoice,  ///< one of `choices`
+  };
+
   std::string name;           ///< e.g. "grid.cell"
   std::string unit;           ///< empty: none
   std::string limits;         ///< what is allowed, e.g. "0.005 to 1 m"
   std::string default_value;  ///< of the default preset
   std::string help;
   bool basic = false;  ///< for users; the others are for those who change how a stage works
+  Kind kind = Kind::kNumber;
+  double low = 0.0;  ///< least and greatest number that is allowed
+  double high = 0.0;
+  std::vector<std::string> choices;
 };
 
 /// All options of a registration, by name; a value that is copied. The names are those of the
@@ -54,6 +65,8 @@ class AGRICOLMAP_EXPORT Options {
   /// The value as `set` takes it. Throws UsageError when there is none of the name.
   std::string get(std::string_view name) const;
   std::vector<OptionInfo> list() const;
+  /// Of the preset that it was made from.
+  std::string preset() const;
 
   Prior prior() const;
   /// Throws UsageError for limits that are outside theirs.

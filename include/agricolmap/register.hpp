@@ -37,7 +37,8 @@ AGRICOLMAP_EXPORT Registration registerClouds(const Cloud& fixed, const Cloud& m
                                               const std::vector<Eigen::Vector3d>& path = {});
 
 /// The moving cloud where a registration lays it, in the fixed file's coordinates: transformation
-/// and deformation. Throws UsageError for a registration without a transformation.
+/// and deformation. Throws UsageError for a registration without a transformation, or that
+/// registerClouds did not return.
 AGRICOLMAP_EXPORT Cloud alignedCloud(const Cloud& moving, const Registration& registration);
 
 }  // namespace agricolmap

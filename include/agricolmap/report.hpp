@@ -16,6 +16,10 @@ AGRICOLMAP_EXPORT void writeReport(const std::filesystem::path& folder,
                                    const Registration& registration,
                                    const std::vector<std::string>& pictures = {});
 
+/// What writeReport writes, as text.
+AGRICOLMAP_EXPORT std::string reportText(const Registration& registration,
+                                         const std::vector<std::string>& pictures = {});
+
 /// Component pictures. Draws what was compared, what was found and how well it fits as PNG files
 /// into an existing folder and returns their names. Throws OutputError.
 AGRICOLMAP_EXPORT std::vector<std::string> writePictures(const std::filesystem::path& folder,

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/processor.hpp"
+#include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/cloud/point_source.hpp"
@@ -52,6 +54,17 @@ void writePly(const std::filesystem::path& path, const Cloud& cloud) { io::write
 void writePly(const std::filesystem::path& path, const Cloud& cloud,
               const Transform& target_from_file) {
   io::writePly(path, cloud, Eigen::Affine3d(target_from_file));
+}
+
+void writeCloud(const std::filesystem::path& path, const Cloud& cloud,
+                const Transform& target_from_file) {
+  const std::optional<io::CloudFormat> format = io::formatByEnding(path);
+  if (!format) {
+    throw UsageError(fmt::format(
+        "{}: its ending names no format that is written; they are ply, pcd, las, laz and copc.laz",
+        path.string()));
+  }
+  io::writeCloud(path, cloud, *format, Eigen::Affine3d(target_from_file));
 }
 
 Transform readMatrix(const std::filesystem::path& path) { return io::readMatrix(path); }

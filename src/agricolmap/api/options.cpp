@@ -30,6 +30,28 @@ std::string textFor(const OptionField& field, double value) {
   return fmt::format("{}", value);
 }
 
+OptionInfo infoOf(const OptionField& field) {
+  OptionInfo info;
+  info.name = field.path;
+  info.unit = field.unit;
+  info.limits = config::limitsText(field);
+  info.default_value = config::optionText(field);
+  info.help = field.help;
+  info.basic = field.level == OptionLevel::kBasic;
+  if (std::holds_alternative<bool*>(field.value)) {
+    info.kind = OptionInfo::Kind::kFlag;
+  } else if (const auto* choice = std::get_if<ChoiceRef>(&field.value)) {
+    info.kind = OptionInfo::Kind::kChoice;
+    info.choices = choice->names;
+  } else {
+    const bool whole = std::holds_alternative<int*>(field.value);
+    info.kind = whole ? OptionInfo::Kind::kInteger : OptionInfo::Kind::kNumber;
+    info.low = field.low;
+    info.high = field.high;
+  }
+  return info;
+}
+
 }  // namespace
 
 Options::Options() : Options(kDefaultPreset) {}
@@ -67,12 +89,11 @@ std::vector<OptionInfo> Options::list() const {
   pipeline::RegistrationOptions defaults = pipeline::preset(kDefaultPreset);
   std::vector<OptionInfo> infos;
   const OptionTable table = optionTable(defaults);
-  for (const OptionField& field : table.fields()) {
-    infos.push_back({field.path, field.unit, config::limitsText(field), config::optionText(field),
-                     field.help, field.level == OptionLevel::kBasic});
-  }
+  for (const OptionField& field : table.fields()) infos.push_back(infoOf(field));
   return infos;
 }
+
+std::string Options::preset() const { return values_->preset; }
 
 Prior Options::prior() const {
   const PriorUncertainty& inside = values_->options.prior;

@@ -14,6 +14,10 @@ struct Registration::Record {
   verdict::EvidenceOptions evidence;  ///< those it was judged with
   std::string fixed_name;
   std::string moving_name;
+  Eigen::Vector3d fixed_origin = Eigen::Vector3d::Zero();  ///< of its local coordinates [m]
+  Crs fixed_crs;
+  bool fixed_coloured = false;
+  bool moving_coloured = false;
   nlohmann::ordered_json report;  ///< but for the names of the pictures
 };
 

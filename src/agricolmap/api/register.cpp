@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "agricolmap/api/checks.hpp"
 #include "agricolmap/api/record.hpp"
 #include "agricolmap/api/values.hpp"
 #include "agricolmap/config/json.hpp"
@@ -23,22 +23,6 @@
 
 namespace agricolmap {
 namespace {
-
-/// What readers of files see to, and callers with points of their own may have missed.
-void requireWhole(const Cloud& cloud) {
-  if (cloud.hasColour() && cloud.rgb.size() != cloud.xyz.size()) {
-    throw InputError(fmt::format("{}: has {} colours for {} points; give one each, or none",
-                                 cloud.name, cloud.rgb.size(), cloud.xyz.size()));
-  }
-  const bool finite =
-      cloud.origin.allFinite() && std::all_of(cloud.xyz.begin(), cloud.xyz.end(),
-                                              [](const auto& point) { return point.allFinite(); });
-  if (!finite) {
-    throw InputError(fmt::format(
-        "{}: has coordinates that are not finite; leave such points out, as makeCloud does",
-        cloud.name));
-  }
-}
 
 Registration::Status statusOf(verdict::Status status) {
   switch (status) {
@@ -203,11 +187,10 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
   requireProcessor();
   requireWhole(fixed);
   requireWhole(moving);
-  if (control.threads < 0) throw UsageError("a number of threads below 0; 0 means all cores");
+  const ThreadLimit limit = threadLimit(control);
   const Options::Values& values = options.values();
   refuseIdle(values);
   const pipeline::RegistrationOptions in_force = pipeline::resolved(values.options);
-  const ThreadLimit limit(control.threads);
   Monitor monitor(control.stop, [&](Stage stage) {
     if (control.on_stage) control.on_stage(nameOf(stage));
   });
@@ -217,6 +200,10 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
   record->evidence = in_force.evidence;
   record->fixed_name = fixed.name;
   record->moving_name = moving.name;
+  record->fixed_origin = fixed.origin;
+  record->fixed_crs = fixed.crs;
+  record->fixed_coloured = fixed.hasColour();
+  record->moving_coloured = moving.hasColour();
   record->report =
       reportOf(fixed, moving, guess, in_force, values.preset, control, record->found, monitor);
   Registration result = publicResult(fixed, record->found);
@@ -236,7 +223,12 @@ Cloud alignedCloud(const Cloud& moving, const Registration& registration) {
   if (!registration.fixed_from_moving) {
     throw UsageError("a registration without a transformation lays no cloud anywhere");
   }
-  return pipeline::alignedCloud(registration.record->found, moving);
+  if (!registration.record) {
+    throw UsageError("a cloud can only be laid by what registerClouds returned");
+  }
+  Cloud aligned = pipeline::alignedCloud(registration.record->found, moving);
+  aligned.crs = registration.record->fixed_crs;
+  return aligned;
 }
 
 }  // namespace agricolmap

@@ -6,14 +6,18 @@
 
 namespace agricolmap {
 
-void writeReport(const std::filesystem::path& folder, const Registration& registration,
-                 const std::vector<std::string>& pictures) {
+std::string reportText(const Registration& registration, const std::vector<std::string>& pictures) {
   if (!registration.record) {
     throw UsageError("a report can only be written of what registerClouds returned");
   }
   nlohmann::ordered_json report = registration.record->report;
   report["pictures"] = pictures;
-  io::writeText(folder / "registration.json", report.dump(2) + "\n");
+  return report.dump(2) + "\n";
+}
+
+void writeReport(const std::filesystem::path& folder, const Registration& registration,
+                 const std::vector<std::string>& pictures) {
+  io::writeText(folder / "registration.json", reportText(registration, pictures));
 }
 
 }  // namespace agricolmap
