@@ -1,0 +1,73 @@
+"""Lays a ground robot's 3D map of a crop field into a drone's.
+
+    result = agricolmap.register("drone.laz", "robot.ply")
+    print(result)
+    if result.accepted:
+        result.aligned("robot.ply").write("aligned.ply")
+
+Clouds are files or NumPy arrays; see `register`, `Cloud` and `read`. Metres; degrees only in names
+that end in ``_deg``. Transformations are 4×4, ``fixed = transform @ moving``.
+"""
+
+from . import _core
+from ._arrays import PathLike
+from ._cloud import Cloud, CloudLike, Crs, read
+from ._errors import Error, InputError, Interrupted, OutputError, UsageError
+from ._maps import CellMap, map_cloud
+from ._options import OptionInfo, Options, Prior
+from ._register import Stop, register
+from ._result import (
+    Alternative,
+    Deformation,
+    Evidence,
+    Heights,
+    Node,
+    Parts,
+    Registration,
+    Slip,
+    Status,
+    Uncertainty,
+)
+from ._transforms import read_matrix, read_path, write_matrix
+
+__version__ = _core.version()
+
+__all__ = [
+    "Alternative",
+    "CellMap",
+    "Cloud",
+    "CloudLike",
+    "Crs",
+    "Deformation",
+    "Error",
+    "Evidence",
+    "Heights",
+    "InputError",
+    "Interrupted",
+    "Node",
+    "OptionInfo",
+    "Options",
+    "OutputError",
+    "Parts",
+    "PathLike",
+    "Prior",
+    "Registration",
+    "Slip",
+    "Status",
+    "Stop",
+    "Uncertainty",
+    "UsageError",
+    "__version__",
+    "aligned",
+    "map_cloud",
+    "read",
+    "read_matrix",
+    "read_path",
+    "register",
+    "write_matrix",
+]
+
+
+def aligned(cloud: CloudLike, result: Registration) -> Cloud:
+    """The moving cloud where a registration lays it: ``result.aligned(cloud)``."""
+    return result.aligned(cloud)
