@@ -8,7 +8,6 @@
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/vector/vector_layer.hpp"
-#include "agricolmap/map/soil_ground.hpp"
 #include "agricolmap/report/facts/facts_layers.hpp"
 #include "agricolmap/report/pictures/facts_picture.hpp"
 #include "common.hpp"
@@ -35,7 +34,7 @@ std::vector<crop::Plot> readPlots(const std::string& path, const FactsInput& inp
   std::vector<crop::Plot> plots;
   if (path.empty()) return plots;
   for (io::NamedPolygon& polygon : io::readPolygons(path, input.crs)) {
-    for (Eigen::Vector2d& corner : polygon.corners) corner -= input.origin;
+    for (Eigen::Vector2d& corner : polygon.corners) corner -= input.layers.origin;
     plots.push_back({std::move(polygon.id), std::move(polygon.corners)});
   }
   return plots;
@@ -50,16 +49,6 @@ void requirePlotsOnMap(const FactsArguments& arguments, const crop::FieldFacts& 
       fmt::format("{}: {} shows nothing of its {} plots; give those of this field, and see that "
                   "their coordinate system is the one that the file says",
                   arguments.plots, arguments.map, facts.per_plot.size()));
-}
-
-/// Heights above the soil that the map shows, unless they are that already or there are none.
-void bringToGround(FactsInput& input, const map::VegetationOptions& options) {
-  if (input.above_ground || input.height.empty()) return;
-  const crop::View view{input.frame, input.exg, input.height};
-  const crop::Greenness greenness = crop::greennessOf(view, options);
-  if (!greenness.known()) return;
-  const Raster<float> ground = map::soilGround(input.frame, input.height, greenness.green);
-  for (std::size_t i = 0; i < ground.size(); ++i) input.height[i] -= ground[i];
 }
 
 void writeFiles(const io::StagedOutput& output, const report::PlacedFacts& placed) {
@@ -83,19 +72,19 @@ ExitCode runFacts(const FactsArguments& arguments, const Globals& globals) {
   FactsInput input = readFactsInput(arguments.map, arguments.crs, progress);
   const std::vector<crop::Plot> plots = readPlots(arguments.plots, input);
   progress.step("look");
-  bringToGround(input, options.vegetation);
-  const crop::View view{input.frame, input.exg, input.height};
-  const crop::FieldFacts facts = crop::factsOf(view, input.origin, plots, options);
+  crop::FieldLayers& layers = input.layers;
+  crop::bringToGround(layers, options.vegetation);
+  const crop::FieldFacts facts = crop::factsOf(layers.view(), layers.origin, plots, options);
   if (!facts.greenness.known()) {
     throw InputError(fmt::format("{}: no crop facts: {}", arguments.map,
                                  map::toString(facts.greenness.threshold.status)));
   }
   requirePlotsOnMap(arguments, facts);
-  const report::PlacedFacts placed{facts, input.origin, plots, input.crs, arguments.map};
+  const report::PlacedFacts placed{facts, layers.origin, plots, input.crs, arguments.map};
   progress.step("write");
   writeFiles(output, placed);
   if (!arguments.no_pictures) {
-    report::writeFactsPicture(output.path(kPicture), input.frame, placed);
+    report::writeFactsPicture(output.path(kPicture), layers.frame, placed);
   }
   output.commit({kPicture, kBrapi, kPlots});
   if (!globals.quiet) fmt::print("{}", report::factsText(placed));

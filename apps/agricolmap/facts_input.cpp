@@ -13,18 +13,13 @@
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/raster/geo_reader.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
-#include "agricolmap/map/footprint.hpp"
-#include "agricolmap/map/grid_map.hpp"
-#include "agricolmap/map/level.hpp"
 #include "agricolmap/report/json/shared_map_file.hpp"
 
 namespace agricolmap {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-constexpr double kSigmaCells = 0.6;   // of the mean of a cell's points
-constexpr double kLeastCell = 0.004;  // finer ones show a leaf's veins [m]
-constexpr double kMostCells = 40e6;   // of a map that has finer layers in places
+constexpr double kMostCells = 40e6;  // of a map that has finer layers in places
 
 /// What a strip shows in cells of its own.
 struct FineStrip {
@@ -114,67 +109,39 @@ FactsInput readMapFolder(const std::filesystem::path& folder) {
   const std::vector<FineStrip> strips = fineStripsOf(folder);
   io::Layer<float> exg = io::readLayer<float>(folder / "layers/exg.tif");
   FactsInput input;
-  input.above_ground = true;
+  crop::FieldLayers& layers = input.layers;
+  layers.above_ground = true;
   if (const auto crs = io::crsFromWkt(exg.shape.crs)) input.crs = *crs;
-  input.frame = placedFrame(exg.shape);
-  input.exg = std::move(exg.bands.front());
+  layers.frame = placedFrame(exg.shape);
+  layers.exg = std::move(exg.bands.front());
   std::error_code ignored;
   // A map of clouds without heights has no such layer.
   if (const auto path = folder / "layers/plant_height.tif";
       std::filesystem::exists(path, ignored)) {
     io::Layer<float> height = io::readLayer<float>(path);
-    if (!sameLattice(input.frame, placedFrame(height.shape))) {
+    if (!sameLattice(layers.frame, placedFrame(height.shape))) {
       throw InputError(
           fmt::format("{}: has not the cells of exg.tif; make the map anew", path.string()));
     }
-    input.height = std::move(height.bands.front());
+    layers.height = std::move(height.bands.front());
   }
   if (!strips.empty()) {
-    const double most = std::sqrt(kMostCells / static_cast<double>(input.exg.size()));
-    const double ratio = std::round(input.frame.cell / strips.front().frame.cell);
+    const double most = std::sqrt(kMostCells / static_cast<double>(layers.exg.size()));
+    const double ratio = std::round(layers.frame.cell / strips.front().frame.cell);
     const int finer = static_cast<int>(std::clamp(std::floor(most), 1.0, std::max(1.0, ratio)));
-    input.frame.cell /= finer;
-    input.frame.rows *= finer;
-    input.frame.cols *= finer;
-    input.exg = cut(input.exg, finer);
-    if (!input.height.empty()) input.height = cut(input.height, finer);
+    layers.frame.cell /= finer;
+    layers.frame.rows *= finer;
+    layers.frame.cols *= finer;
+    layers.exg = cut(layers.exg, finer);
+    if (!layers.height.empty()) layers.height = cut(layers.height, finer);
     for (const FineStrip& strip : strips) {
-      paint(strip.frame, strip.exg, input.frame, input.exg);
-      if (!input.height.empty()) paint(strip.frame, strip.height, input.frame, input.height);
+      paint(strip.frame, strip.exg, layers.frame, layers.exg);
+      if (!layers.height.empty()) paint(strip.frame, strip.height, layers.frame, layers.height);
     }
   }
-  input.origin = input.frame.corner.array().floor().matrix();
-  input.frame.corner -= input.origin;
+  layers.origin = layers.frame.corner.array().floor().matrix();
+  layers.frame.corner -= layers.origin;
   return input;
-}
-
-/// Heights become those above the field's plane, places stay.
-Eigen::Affine3d flattened(const map::Levelling& levelling) {
-  Eigen::Affine3d result = Eigen::Affine3d::Identity();
-  result.matrix().row(2) = levelling.levelled_from_guess.matrix().row(2);
-  return result;
-}
-
-/// Points of a cloud leave cells empty that lie between seen ones: these take their neighbours'
-/// mean.
-void fillBetween(Raster<float>& values) {
-  constexpr int kLeastNeighbours = 3;
-  const Raster<float> before = values;
-  for (int row = 1; row + 1 < values.rows(); ++row) {
-    for (int col = 1; col + 1 < values.cols(); ++col) {
-      if (std::isfinite(before(row, col))) continue;
-      float sum = 0.0F;
-      int count = 0;
-      for (int r = row - 1; r <= row + 1; ++r) {
-        for (int c = col - 1; c <= col + 1; ++c) {
-          if (!std::isfinite(before(r, c))) continue;
-          sum += before(r, c);
-          ++count;
-        }
-      }
-      if (count >= kLeastNeighbours) values(row, col) = sum / static_cast<float>(count);
-    }
-  }
 }
 
 FactsInput readCloudInput(const std::string& path, const std::string& given, Progress& progress) {
@@ -190,31 +157,9 @@ FactsInput readCloudInput(const std::string& path, const std::string& given, Pro
   io::StreamOptions options;
   options.on_pass = [&](std::size_t seen, std::size_t of) { progress.points(seen, of); };
   const std::unique_ptr<PointStream> cloud = io::streamMap(files, options);
-  const map::Levelling levelling =
-      map::levelCloud(*cloud, Eigen::Affine3d::Identity(), map::LevelOptions());
-  const Eigen::Affine3d flat = flattened(levelling);
-  const map::Footprint footprint = map::footprintOf(*cloud, flat);
-  map::GridOptions grid;
-  grid.cell = std::max(kLeastCell, footprint.spacing());
-  grid.sigma = kSigmaCells * grid.cell;
-  grid.coarsen = false;
-  map::GridMap gridded = map::makeGridMap(*cloud, flat, footprint.box, grid);
   FactsInput input;
   if (crs.crs) input.crs = *crs.crs;
-  input.frame = gridded.frame;
-  input.origin = cloud->facts().origin.head<2>();
-  for (std::size_t i = 0; i < gridded.exg.size(); ++i) {
-    if (gridded.valid(i)) continue;
-    gridded.exg[i] = kNone;
-    gridded.height[i] = kNone;
-  }
-  // An orthomosaic without a surface model is laid flat: that is no plants of no height.
-  if (map::hasRelief(gridded)) {
-    fillBetween(gridded.height);
-    input.height = std::move(gridded.height);
-  }
-  fillBetween(gridded.exg);
-  input.exg = std::move(gridded.exg);
+  input.layers = crop::layersOf(*cloud);
   return input;
 }
 

@@ -1,23 +1,18 @@
 // What `agricolmap facts` looks at: the layers of a map's folder, or a cloud.
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <string>
 
 #include "agricolmap/core/cloud.hpp"
-#include "agricolmap/core/raster.hpp"
+#include "agricolmap/crop/field_layers.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
 
 struct FactsInput {
-  GridFrame frame;                                   ///< file coordinates less `origin` [m]
-  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< whole metres
-  Crs crs;                                           ///< empty: nobody said
-  Raster<float> exg;                                 ///< chromatic, NaN where there is none
-  Raster<float> height;                              ///< above ground, or above the field's plane
-  bool above_ground = false;                         ///< which of them `height` is
+  crop::FieldLayers layers;
+  Crs crs;  ///< empty: nobody said
 };
 
 /// A folder is a map: layers/exg.tif and layers/plant_height.tif, and those of fine/ where there

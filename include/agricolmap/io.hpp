@@ -83,8 +83,11 @@ struct CloudPair {
 /// that is not understood.
 AGRICOLMAP_EXPORT CloudPair readPair(const MapFile& fixed, const MapFile& moving);
 
-/// Component gdal. The same of one map. `target`: as MapFile::crs, into which it is brought; empty:
-/// it stays in its own, in metres.
+/// Component gdal. As readPair reads the moving one beside a fixed cloud in this frame.
+AGRICOLMAP_EXPORT Cloud readBeside(const Crs& frame, const MapFile& moving);
+
+/// Component gdal. The same of one map alone. `target`: as MapFile::crs, into which it is brought
+/// (InputError when the file does not say where it is); empty: it stays in its own, in metres.
 AGRICOLMAP_EXPORT Cloud readMap(const MapFile& file, const std::string& target = {});
 
 }  // namespace agricolmap

@@ -40,6 +40,17 @@ CloudPair readPair(const MapFile& fixed, const MapFile& moving) {
   return pair;
 }
 
+Cloud readBeside(const Crs& frame_crs, const MapFile& moving) {
+  requireProcessor();
+  io::FileCrs fixed;
+  fixed.name = "the fixed cloud";
+  if (!frame_crs.wkt.empty()) fixed.crs = frame_crs;
+  const io::CommonFrame frame = io::commonFrame(fixed, crsOf(moving));
+  Cloud cloud = readInto(moving, frame.moving.get(), frame);
+  addWarnings(frame, cloud);
+  return cloud;
+}
+
 Cloud readMap(const MapFile& file, const std::string& target) {
   requireProcessor();
   const io::FileCrs crs = crsOf(file);
