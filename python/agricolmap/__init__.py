@@ -13,6 +13,18 @@ from . import _core
 from ._arrays import PathLike
 from ._cloud import Cloud, CloudLike, Crs, read
 from ._errors import Error, InputError, Interrupted, OutputError, UsageError
+from ._facts import (
+    CropFacts,
+    Gaps,
+    Plants,
+    Row,
+    Square,
+    Stand,
+    Weeds,
+    facts,
+    facts_options,
+)
+from ._field import FieldMap, FusedStrip, Strip, fuse, fuse_options
 from ._maps import CellMap, map_cloud
 from ._options import OptionInfo, Options, Prior
 from ._register import Stop, register
@@ -37,10 +49,14 @@ __all__ = [
     "CellMap",
     "Cloud",
     "CloudLike",
+    "CropFacts",
     "Crs",
     "Deformation",
     "Error",
     "Evidence",
+    "FieldMap",
+    "FusedStrip",
+    "Gaps",
     "Heights",
     "InputError",
     "Interrupted",
@@ -50,15 +66,25 @@ __all__ = [
     "OutputError",
     "Parts",
     "PathLike",
+    "Plants",
     "Prior",
     "Registration",
+    "Row",
     "Slip",
+    "Square",
+    "Stand",
     "Status",
     "Stop",
+    "Strip",
     "Uncertainty",
     "UsageError",
+    "Weeds",
     "__version__",
     "aligned",
+    "facts",
+    "facts_options",
+    "fuse",
+    "fuse_options",
     "map_cloud",
     "read",
     "read_matrix",

@@ -34,7 +34,7 @@ def as_array(value: Any, argument: str) -> npt.NDArray[Any]:
         raise UsageError(f"{argument}: is no array: {error}") from None
 
 
-def _numbers(value: Any, argument: str, needs: str) -> npt.NDArray[Any]:
+def numbers(value: Any, argument: str, needs: str) -> npt.NDArray[Any]:
     array = as_array(value, argument)
     if array.dtype.kind not in "fiu":
         raise UsageError(f"{argument}: has dtype {array.dtype}; give {needs}")
@@ -44,7 +44,7 @@ def _numbers(value: Any, argument: str, needs: str) -> npt.NDArray[Any]:
 def points(value: Any, argument: str) -> Floats:
     """N×3 coordinates as float64, one row per point."""
     needs = "coordinates x, y, z in metres as float64, shape (N, 3)"
-    array = _numbers(value, argument, needs)
+    array = numbers(value, argument, needs)
     if array.ndim != 2 or array.shape[1] != 3:
         turned = " (transposed?)" if array.ndim == 2 and array.shape[0] == 3 else ""
         raise UsageError(f"{argument}: has shape {array.shape}{turned}; give {needs}")
@@ -70,7 +70,7 @@ def colours(value: Any, argument: str, count: int) -> Bytes:
 def matrix(value: Any, argument: str) -> Floats:
     """A 4×4 affine transformation."""
     needs = "an affine transformation: 4 x 4 numbers, the last row 0 0 0 1"
-    array = _numbers(value, argument, needs)
+    array = numbers(value, argument, needs)
     if array.shape != (4, 4):
         raise UsageError(f"{argument}: has shape {array.shape}; give {needs}")
     affine = np.ascontiguousarray(array, dtype=np.float64)

@@ -174,7 +174,8 @@ def _file_text(value: Any, argument: str) -> str:
     return _arrays.path_of(value, argument)
 
 
-def _read_text(text: str, crs: str, target: str) -> Cloud:
+def _read_text(text: str, crs: str = "", target: str = "", beside: Optional[Crs] = None) -> Cloud:
+    """A file in its own system, in `target`, or as the moving one of a pair in that of `beside`."""
     try:
         from . import _gdal
     except ImportError:
@@ -183,6 +184,8 @@ def _read_text(text: str, crs: str, target: str) -> Cloud:
                 "crs: this build has no GDAL, which coordinate systems need (AGRICOLMAP_WITH_GDAL)"
             ) from None
         return Cloud._of(_core.read_cloud(text))
+    if beside is not None:
+        return Cloud._of(_gdal.read_beside(_core.Crs(beside.name, beside.wkt), text))
     return Cloud._of(_gdal.read_map(text, crs, target))
 
 
@@ -205,13 +208,12 @@ def read(
     return _read_text(_file_text(path, "path"), crs, target_crs)
 
 
-def cloud_of(value: Any, argument: str, like: Optional[Cloud] = None) -> Cloud:
-    """The cloud that `value` stands for; files are brought into the system of `like`."""
+def cloud_of(value: Any, argument: str, beside: Optional[Crs] = None) -> Cloud:
+    """The cloud that `value` stands for; files are read as the moving one of a pair."""
     if isinstance(value, Cloud):
         return value
     if _is_file(value):
-        target = like.crs.wkt if like is not None else ""
-        return _read_text(_file_text(value, argument), "", target)
+        return _read_text(_file_text(value, argument), beside=beside)
     xyz, colours = value, None
     if isinstance(value, tuple) and len(value) == 2:
         xyz, colours = value
@@ -225,7 +227,7 @@ def pair_of(fixed: Any, moving: Any) -> Tuple[Cloud, Cloud]:
     """Both clouds in one frame: that of the fixed one."""
     if not (_is_file(fixed) and _is_file(moving)):
         first = cloud_of(fixed, "fixed")
-        return first, cloud_of(moving, "moving", like=first)
+        return first, cloud_of(moving, "moving", first.crs)
     try:
         from . import _gdal
     except ImportError:

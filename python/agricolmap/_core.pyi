@@ -112,3 +112,30 @@ def compared_maps(registration: Registration, /) -> Tuple[Dict[str, Any], Dict[s
 def map_cloud(
     cloud: Cloud, options: Options, stop: Optional[Any], threads: int, /
 ) -> Dict[str, Any]: ...
+
+class FieldMap:
+    def values(self) -> Dict[str, Any]: ...
+
+def fuse_options() -> List[OptionInfo]: ...
+def facts_options() -> List[OptionInfo]: ...
+def laid_strip(
+    moving: Cloud, registration: Registration, /
+) -> Tuple[Cloud, float, float, bool]: ...
+def fuse(
+    fixed: Cloud,
+    strips: List[Tuple[str, Cloud, float, float, bool, int]],
+    settings: List[Tuple[str, str]],
+    date: int,
+    progress: Optional[Callable[[str], Any]],
+    stop: Optional[Any],
+    threads: int,
+    /,
+) -> FieldMap: ...
+def facts(
+    source: Union[Cloud, FieldMap],
+    settings: List[Tuple[str, str]],
+    plots: List[Tuple[str, _Floats]],
+    stop: Optional[Any],
+    threads: int,
+    /,
+) -> Dict[str, Any]: ...

@@ -1,8 +1,9 @@
 from typing import Tuple
 
-from ._core import Cloud
+from ._core import Cloud, Crs
 
 def read_pair(
     fixed: str, fixed_crs: str, moving: str, moving_crs: str, /
 ) -> Tuple[Cloud, Cloud]: ...
+def read_beside(frame: Crs, path: str, /) -> Cloud: ...
 def read_map(path: str, crs: str, target: str, /) -> Cloud: ...

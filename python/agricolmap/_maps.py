@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Dict, Mapping, Optional, Tuple, Union
+from dataclasses import dataclass, fields, replace
+from typing import Any, Dict, Mapping, Optional, Tuple, TypeVar, Union, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -14,36 +14,20 @@ from ._cloud import CloudLike, Crs, cloud_of
 from ._options import Options, options_of
 
 
-@dataclass(frozen=True, eq=False)
-class CellMap:
-    """A cloud seen along its ground's normal, in square cells.
+_Map = TypeVar("_Map", bound="Cells")
 
-    Row 0 is the southernmost where the map lies as its file does; `north_up` turns that. Where no
-    point fell, floats are NaN, colours black and the weight 0.
 
-    Attributes:
-        height_m: rows×columns float32, mean height above the ground plane [m].
-        excess_green: rows×columns float32, mean; all NaN for a cloud without colours.
-        colour: rows×columns×3 uint8, mean.
-        weight: rows×columns float32, points that a cell's values rest on.
-        cell_m: side of a cell [m].
-        file_from_cell: 4×4, (column, row, height above the ground [m], 1) → file coordinates [m].
-            Corners of cells are whole numbers: the middle of the first one is (0.5, 0.5).
-        crs: what the file coordinates mean.
-    """
+class Cells:
+    """Where the cells of a map lie."""
 
-    height_m: npt.NDArray[np.float32]
     excess_green: npt.NDArray[np.float32]
-    colour: Bytes
-    weight: npt.NDArray[np.float32]
     cell_m: float
     file_from_cell: Floats
-    crs: Crs = Crs()
 
     @property
     def shape(self) -> Tuple[int, int]:
         """Rows and columns."""
-        rows, cols = self.height_m.shape
+        rows, cols = self.excess_green.shape
         return rows, cols
 
     @property
@@ -72,24 +56,52 @@ class CellMap:
         cells: Floats = np.linalg.solve([[a, b], [d, e]], (at[:, :2] - [c, f]).T).T
         return cells
 
-    def north_up(self) -> "CellMap":
+    def north_up(self: _Map) -> _Map:
         """The same with the northernmost row first, as pictures and most rasters have it."""
         rows, _ = self.shape
         turned = np.eye(4)
         turned[1, 1], turned[1, 3] = -1.0, rows
-        return CellMap(
-            height_m=self.height_m[::-1],
-            excess_green=self.excess_green[::-1],
-            colour=self.colour[::-1],
-            weight=self.weight[::-1],
-            cell_m=self.cell_m,
-            file_from_cell=self.file_from_cell @ turned,
-            crs=self.crs,
+        layers = {
+            layer.name: getattr(self, layer.name)[::-1]
+            for layer in fields(cast(Any, self))
+            if getattr(getattr(self, layer.name), "shape", ())[:2] == self.shape
+        }
+        made: _Map = replace(
+            cast(Any, self), **layers, file_from_cell=self.file_from_cell @ turned
         )
+        return made
 
     def __repr__(self) -> str:
         rows, cols = self.shape
-        return f"<agricolmap.CellMap {rows} rows x {cols} columns of {self.cell_m:g} m>"
+        kind = type(self).__name__
+        return f"<agricolmap.{kind} {rows} rows x {cols} columns of {self.cell_m:g} m>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CellMap(Cells):
+    """A cloud seen along its ground's normal, in square cells.
+
+    Row 0 is the southernmost where the map lies as its file does; `north_up` turns that. Where no
+    point fell, floats are NaN, colours black and the weight 0.
+
+    Attributes:
+        height_m: rows×columns float32, mean height above the ground plane [m].
+        excess_green: rows×columns float32, mean; all NaN for a cloud without colours.
+        colour: rows×columns×3 uint8, mean.
+        weight: rows×columns float32, points that a cell's values rest on.
+        cell_m: side of a cell [m].
+        file_from_cell: 4×4, (column, row, height above the ground [m], 1) → file coordinates [m].
+            Corners of cells are whole numbers: the middle of the first one is (0.5, 0.5).
+        crs: what the file coordinates mean.
+    """
+
+    height_m: npt.NDArray[np.float32]
+    excess_green: npt.NDArray[np.float32]
+    colour: Bytes
+    weight: npt.NDArray[np.float32]
+    cell_m: float
+    file_from_cell: Floats
+    crs: Crs = Crs()
 
 
 def map_of(values: Dict[str, Any], crs: Crs) -> CellMap:

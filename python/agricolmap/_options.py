@@ -177,8 +177,8 @@ class Options:
     def update(self, values: Mapping[str, Any]) -> None:
         """Sets all of these, nested or with dots, or none."""
         changed = _core.Options(self._handle)
-        for name, value in _flat(values):
-            changed.set(name, _text(name, value))
+        for name, text in flat_texts(values):
+            changed.set(name, text)
         self._handle = changed
 
     def save(self, path: PathLike) -> None:
@@ -222,8 +222,8 @@ class Options:
         return f"<agricolmap.Options {self.preset!r}{changed}>"
 
 
-def _table() -> Tuple[OptionInfo, ...]:
-    return tuple(
+def infos_of(table: List[_core.OptionInfo]) -> List[OptionInfo]:
+    return [
         OptionInfo(
             name=info.name,
             type=_TYPES[info.kind],
@@ -236,11 +236,16 @@ def _table() -> Tuple[OptionInfo, ...]:
             help=info.help,
             basic=info.basic,
         )
-        for info in _core.Options("default").list()
-    )
+        for info in table
+    ]
 
 
-_TABLE = _table()
+def flat_texts(values: Mapping[str, Any]) -> List[Tuple[str, str]]:
+    """Names with dots and what the library reads."""
+    return [(name, _text(name, value)) for name, value in _flat(values)]
+
+
+_TABLE = infos_of(_core.Options("default").list())
 _KINDS = {info.name: info.type.__name__ for info in _TABLE}
 
 

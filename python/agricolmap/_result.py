@@ -258,10 +258,12 @@ class Registration:
     def aligned(self, cloud: CloudLike) -> Cloud:
         """The moving cloud, or one in its file's coordinates, where the registration lays it.
 
+        A file is read as it was for the registration; all but its coordinates and colours is lost.
+
         Raises:
             UsageError: for a registration without a transformation.
         """
-        moving = cloud_of(cloud, "cloud")
+        moving = cloud_of(cloud, "cloud", self.crs)
         return Cloud._of(_core.aligned_cloud(moving._handle, self._handle))
 
     def maps(self) -> Tuple[CellMap, CellMap]:

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.transforms import Affine2D  # noqa: E402
 
 if len(sys.argv) != 4:
-    sys.exit("usage: 06_walk_through.py DRONE ROBOT GUESS")
+    sys.exit("usage: 07_walk_through.py DRONE ROBOT GUESS")
 guess = agricolmap.read_matrix(sys.argv[3])
 drone, robot = map(agricolmap.read, sys.argv[1:3])
 

@@ -38,6 +38,7 @@ py::array_t<Value> arrayOf(const std::vector<Value>& values, std::vector<py::ssi
 Colours arrayOf(const std::vector<Rgb>& colours, py::ssize_t rows, py::ssize_t cols);
 
 void bindClouds(py::module_& module);
+void bindField(py::module_& module);
 void bindMaps(py::module_& module);
 void bindOptions(py::module_& module);
 void bindRegistration(py::module_& module);

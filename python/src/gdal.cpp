@@ -21,6 +21,10 @@ PYBIND11_MODULE(_gdal, module) {
     return py::make_tuple(std::make_shared<agricolmap::Cloud>(std::move(pair.fixed)),
                           std::make_shared<agricolmap::Cloud>(std::move(pair.moving)));
   });
+  module.def("read_beside", [](const agricolmap::Crs& frame, const std::string& path) {
+    const py::gil_scoped_release release;
+    return std::make_shared<agricolmap::Cloud>(agricolmap::readBeside(frame, {path}));
+  });
   module.def("read_map",
              [](const std::string& path, const std::string& crs, const std::string& target) {
                const py::gil_scoped_release release;

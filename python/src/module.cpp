@@ -111,4 +111,5 @@ PYBIND11_MODULE(_core, module) {
   python::bindOptions(module);
   python::bindRegistration(module);
   python::bindMaps(module);
+  python::bindField(module);
 }

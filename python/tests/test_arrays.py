@@ -140,6 +140,25 @@ def test_coordinate_systems_are_kept_and_changed(tmp_path, flat):
     assert own.crs == zone_32.crs
 
 
+def test_a_pair_is_brought_into_the_frame_of_the_fixed_one(tmp_path, pairs):
+    pytest.importorskip("agricolmap._gdal", reason="a build without GDAL")
+    folder = pairs / "georeferenced"
+    drone = agricolmap.read(folder / "uav/point_cloud.ply", crs="EPSG:32632")
+    drone.write(tmp_path / "drone.las")
+    result = agricolmap.register(tmp_path / "drone.las", folder / "ugv/point_cloud.ply")
+    assert result.accepted and result.crs.name == "WGS 84 / UTM zone 32N"
+    assert any("coordinate system" in warning for warning in result.warnings)
+    agricolmap.read(folder / "ugv/point_cloud.ply", crs="EPSG:32632").write(tmp_path / "robot.las")
+    other = agricolmap.read(tmp_path / "robot.las", target_crs="EPSG:32633")
+    other.write(tmp_path / "other.las")
+    again = agricolmap.register(drone, tmp_path / "other.las")
+    assert again.accepted
+    laid = again.aligned(tmp_path / "other.las")
+    there = result.aligned(folder / "ugv/point_cloud.ply")
+    assert laid.crs == result.crs and np.abs(laid.xyz - there.xyz).max() < 0.05
+    assert np.abs(other.xyz - there.xyz).max() > 1e5
+
+
 def test_matrices_and_paths_go_out_and_come_back(tmp_path):
     moved = np.eye(4)
     moved[:3] = np.random.default_rng(1).normal(size=(3, 4))

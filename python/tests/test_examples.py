@@ -13,7 +13,8 @@ ARGUMENTS = {
     "03_arrays.py": ["same_field", "prior.txt"],
     "04_progress_and_stop.py": ["georeferenced"],
     "05_maps_and_pictures.py": ["georeferenced"],
-    "06_walk_through.py": ["same_field", "prior.txt"],
+    "06_one_map_of_all.py": ["georeferenced"],
+    "07_walk_through.py": ["same_field", "prior.txt"],
 }
 
 
@@ -34,7 +35,7 @@ def test_every_example_is_run():
 
 @pytest.mark.parametrize("name", sorted(ARGUMENTS))
 def test_examples_run(name, pairs, tmp_path):
-    if name == "06_walk_through.py":
+    if name == "07_walk_through.py":
         pytest.importorskip("matplotlib", reason="the walk through draws with matplotlib")
     ran = run(name, pairs, tmp_path)
     assert ran.returncode == 0, ran.stderr
