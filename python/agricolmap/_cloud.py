@@ -223,11 +223,23 @@ def cloud_of(value: Any, argument: str, beside: Optional[Crs] = None) -> Cloud:
     return Cloud._of(_core.make_cloud(at, rgb, argument, _core.Crs("", ""), warnings))
 
 
+def _require_one_frame(fixed: Cloud, moving: Cloud) -> None:
+    """Two systems of two names; what nobody said, or said in other words, is taken as it stands."""
+    names = fixed.crs.name, moving.crs.name
+    if all(names) and names[0] != names[1]:
+        raise UsageError(
+            f"moving: is in {names[1]}, and fixed in {names[0]}; bring it there by "
+            "read(path, target_crs=fixed.crs.wkt), or give its file"
+        )
+
+
 def pair_of(fixed: Any, moving: Any) -> Tuple[Cloud, Cloud]:
     """Both clouds in one frame: that of the fixed one."""
     if not (_is_file(fixed) and _is_file(moving)):
         first = cloud_of(fixed, "fixed")
-        return first, cloud_of(moving, "moving", first.crs)
+        second = cloud_of(moving, "moving", first.crs)
+        _require_one_frame(first, second)
+        return first, second
     try:
         from . import _gdal
     except ImportError:

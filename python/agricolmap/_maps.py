@@ -11,8 +11,8 @@ import numpy.typing as npt
 from . import _arrays, _core
 from ._arrays import Bytes, Floats, PathLike
 from ._cloud import CloudLike, Crs, cloud_of
+from ._errors import UsageError
 from ._options import Options, options_of
-
 
 _Map = TypeVar("_Map", bound="Cells")
 
@@ -51,7 +51,10 @@ class Cells:
 
         ``numpy.floor`` of them are the indices ``[row, column]``.
         """
-        at = np.asarray(xy, dtype=np.float64)
+        needs = "coordinates in metres, shape (N, 2) or (N, 3)"
+        at = _arrays.numbers(xy, "xy", needs)
+        if at.ndim != 2 or at.shape[1] not in (2, 3):
+            raise UsageError(f"xy: has shape {at.shape}; give {needs}")
         a, b, c, d, e, f = self.affine
         cells: Floats = np.linalg.solve([[a, b], [d, e]], (at[:, :2] - [c, f]).T).T
         return cells
@@ -64,7 +67,8 @@ class Cells:
         layers = {
             layer.name: getattr(self, layer.name)[::-1]
             for layer in fields(cast(Any, self))
-            if getattr(getattr(self, layer.name), "shape", ())[:2] == self.shape
+            if layer.name != "file_from_cell"
+            and getattr(getattr(self, layer.name), "shape", ())[:2] == self.shape
         }
         made: _Map = replace(
             cast(Any, self), **layers, file_from_cell=self.file_from_cell @ turned

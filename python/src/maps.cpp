@@ -31,10 +31,10 @@ void bindMaps(py::module_& module) {
   });
   module.def("map_cloud", [](const std::shared_ptr<Cloud>& cloud, const Options& options,
                              const py::object& stop, int threads) {
-    const Options chosen = options;
-    return valuesOf(waitFor({py::none(), stop}, threads, [&](const Control& control) {
-      return mapCloud(*cloud, chosen, control);
-    }));
+    return valuesOf(
+        waitFor({py::none(), stop}, threads, [&, chosen = options](const Control& control) {
+          return mapCloud(*cloud, chosen, control);
+        }));
   });
 }
 

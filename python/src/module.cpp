@@ -2,6 +2,8 @@
 #include <agricolmap/error.hpp>
 #include <agricolmap/version.hpp>
 #include <algorithm>
+#include <exception>
+#include <utility>
 
 #include "bindings.hpp"
 
@@ -91,7 +93,7 @@ Colours arrayOf(const std::vector<Rgb>& colours, py::ssize_t rows, py::ssize_t c
 void translateErrors() {
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
-      if (pointer) std::rethrow_exception(pointer);
+      if (pointer) std::rethrow_exception(std::move(pointer));
     } catch (const Error& error) {
       const py::object type = py::module_::import("agricolmap._errors").attr(nameOf(error.kind()));
       const py::object raised = type(error.what(), nameOf(error.remedy()));

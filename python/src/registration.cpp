@@ -133,13 +133,13 @@ std::shared_ptr<Result> registerInto(const std::shared_ptr<Cloud>& fixed,
                                      const py::object& progress, const py::object& stop,
                                      int threads) {
   const Transform fixed_from_moving = transformOf(guess);
-  // Another thread of Python may set options, or write into the array, meanwhile.
-  const Options chosen = options;
+  // Copies, as another thread of Python may set options, or write into the array, meanwhile.
   const auto rows = rowsOf(path);
   const std::vector<Eigen::Vector3d> places(rows.begin(), rows.end());
-  return std::make_shared<Result>(waitFor({progress, stop}, threads, [&](const Control& control) {
-    return registerClouds(*fixed, *moving, fixed_from_moving, chosen, control, places);
-  }));
+  return std::make_shared<Result>(
+      waitFor({progress, stop}, threads, [&, chosen = options](const Control& control) {
+        return registerClouds(*fixed, *moving, fixed_from_moving, chosen, control, places);
+      }));
 }
 
 }  // namespace

@@ -157,6 +157,8 @@ def test_a_pair_is_brought_into_the_frame_of_the_fixed_one(tmp_path, pairs):
     there = result.aligned(folder / "ugv/point_cloud.ply")
     assert laid.crs == result.crs and np.abs(laid.xyz - there.xyz).max() < 0.05
     assert np.abs(other.xyz - there.xyz).max() > 1e5
+    with pytest.raises(agricolmap.UsageError, match="moving: is in WGS 84 / UTM zone 33N"):
+        agricolmap.register(drone, other)
 
 
 def test_matrices_and_paths_go_out_and_come_back(tmp_path):

@@ -1,7 +1,9 @@
 """The registration: what comes out."""
 
 import json
+import os
 import pickle
+import subprocess
 
 import agricolmap
 import numpy as np
@@ -83,10 +85,17 @@ def test_a_map_of_one_cloud_lies_where_the_cloud_does(flat):
     assert np.allclose(up_x, x[::-1]) and np.allclose(up_y, y[::-1])
     assert np.array_equal(up.colour, map_.colour[::-1])
     assert np.allclose(map_.cells_of([[x[2, 3], y[2, 3]]]), [[3.5, 2.5]])
+    with pytest.raises(agricolmap.UsageError, match=r"xy: has shape \(2,\)"):
+        map_.cells_of([1, 2])
+    four = np.linspace(0, 1.99, 200)
+    four = np.column_stack([np.repeat(four, 200), np.tile(four, 200), np.zeros(40000)])
+    small = agricolmap.map_cloud(four, {"grid": {"cell": 0.5, "sigma": 1}})
+    assert small.shape == (4, 4) and small.north_up().affine[4] == pytest.approx(-0.5)
     assert np.isnan(agricolmap.map_cloud(xyz).excess_green).all()
 
 
 def test_reports_and_pictures_are_written(result, tmp_path):
+    pytest.importorskip("agricolmap._pictures", reason="a build without pictures")
     names = result.write_report(tmp_path / "new")
     assert names[0] == "registration.json" and "overlay_after.png" in names
     assert all((tmp_path / "new" / name).stat().st_size > 500 for name in names)
@@ -100,6 +109,22 @@ def test_reports_and_pictures_are_written(result, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(agricolmap.OutputError, match="file"):
         result.write_report(tmp_path / "file" / "inside")
+
+
+def test_reports_are_applied_by_the_program(result, pairs, robot, tmp_path):
+    """The program lays whole files by what Python wrote."""
+    result.write_report(tmp_path / "run", pictures=False)
+    subprocess.run(
+        [
+            os.environ["AGRICOLMAP_PROGRAM"],
+            *("apply", tmp_path / "run", pairs / "same_field/ugv/point_cloud.ply"),
+            *("-o", tmp_path / "laid"),
+        ],
+        check=True,
+        capture_output=True,
+    )
+    (laid,) = (tmp_path / "laid").glob("*.ply")
+    assert np.abs(agricolmap.read(laid).xyz - result.place(robot.xyz)).max() < 1e-4
 
 
 def test_what_has_no_place_lays_nothing(flat):
