@@ -63,6 +63,16 @@ def test_another_field_is_rejected(pairs):
     assert str(result).startswith("rejected\n  ") and result.reasons
 
 
+def test_a_transformation_from_elsewhere_is_checked(pairs, drone, robot):
+    narrow = {"prior": {"translation": 0.2, "heading_deg": 1, "scale": 0.02}}
+    mine = agricolmap.read_matrix(pairs / "same_field/truth.txt")
+    mine[0, 3] += 0.05
+    result = agricolmap.register(drone, robot, mine, narrow)
+    assert result.accepted and abs(result.parts.shift_m[0] + 0.05) < 0.02
+    mine[0, 3] += 1
+    assert not agricolmap.register(drone, robot, mine, narrow).accepted
+
+
 def test_the_path_of_the_robot_is_taken(drone, robot, guess, tmp_path):
     at = robot.xyz
     path = at[[at[:, 0].argmin(), at[:, 0].argmax()]]
