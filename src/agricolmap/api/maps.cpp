@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "agricolmap/api/checks.hpp"
+#include "agricolmap/api/compared.hpp"
 #include "agricolmap/api/record.hpp"
 #include "agricolmap/api/values.hpp"
 #include "agricolmap/core/interrupt.hpp"
@@ -44,22 +45,30 @@ CellMap cellMap(const map::GridMap& grid, bool coloured,
 
 }  // namespace
 
+ComparedMaps comparedMaps(const pipeline::PairMaps& maps,
+                          const std::optional<Eigen::Affine3d>& local_fixed_from_moving,
+                          const Eigen::Vector3d& fixed_origin, const Coloured& coloured) {
+  const Eigen::Translation3d file_from_local(fixed_origin);
+  const Eigen::Affine3d fixed = file_from_local * maps.frames.levelled_from_fixed.inverse();
+  const Eigen::Affine3d moving =
+      local_fixed_from_moving
+          ? file_from_local * *local_fixed_from_moving * maps.frames.levelled_from_moving.inverse()
+          : fixed;
+  ComparedMaps both;
+  both.fixed = cellMap(maps.fixed, coloured.fixed, fixed);
+  both.moving = cellMap(maps.moving, coloured.moving, moving);
+  return both;
+}
+
 ComparedMaps comparedMaps(const Registration& registration) {
   if (!registration.record) {
     throw UsageError("maps can only be had of what registerClouds returned");
   }
   const Registration::Record& record = *registration.record;
-  const pipeline::PairMaps& maps = record.found.maps;
-  const Eigen::Translation3d file_from_local(record.fixed_origin);
-  const Eigen::Affine3d fixed = file_from_local * maps.frames.levelled_from_fixed.inverse();
-  ComparedMaps both;
-  both.fixed = cellMap(maps.fixed, record.fixed_coloured, fixed);
-  const Eigen::Affine3d moving =
-      record.found.transform ? file_from_local * record.found.transform->local_fixed_from_moving *
-                                   maps.frames.levelled_from_moving.inverse()
-                             : fixed;
-  both.moving = cellMap(maps.moving, record.moving_coloured, moving);
-  return both;
+  std::optional<Eigen::Affine3d> laid;
+  if (record.found.transform) laid = record.found.transform->local_fixed_from_moving;
+  return comparedMaps(record.found.maps, laid, record.fixed_origin,
+                      {record.fixed_coloured, record.moving_coloured});
 }
 
 CellMap mapCloud(const Cloud& cloud, const Options& options, const Control& control) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "agricolmap/api/checks.hpp"
+#include "agricolmap/api/finished.hpp"
 #include "agricolmap/api/record.hpp"
 #include "agricolmap/api/values.hpp"
 #include "agricolmap/config/json.hpp"
@@ -134,7 +135,6 @@ Registration publicResult(const Cloud& fixed, const pipeline::Registration& foun
   return result;
 }
 
-/// Refuses what was changed in vain, so that nobody believes it to have acted.
 void refuseIdle(const Options::Values& values) {
   pipeline::RegistrationOptions options = values.options;
   pipeline::RegistrationOptions preset = pipeline::preset(values.preset);
@@ -151,17 +151,16 @@ void refuseIdle(const Options::Values& values) {
   }
 }
 
-nlohmann::ordered_json reportOf(const Cloud& fixed, const Cloud& moving, const Transform& guess,
-                                const pipeline::RegistrationOptions& options,
-                                const std::string& preset, const Control& control,
-                                const pipeline::Registration& found, const Monitor& monitor) {
-  pipeline::RegistrationOptions in_force = options;
+nlohmann::ordered_json reportOf(const Cloud& fixed, const Cloud& moving,
+                                const pipeline::Registration& found, const Asked& asked,
+                                const Monitor& monitor) {
+  pipeline::RegistrationOptions in_force = asked.options;
   report::RegistrationReportInfo info;
   info.version = version();
-  info.seed = static_cast<std::uint64_t>(options.seed);
-  info.threads = control.threads;
-  info.preset = preset;
-  info.prior = guess;
+  info.seed = static_cast<std::uint64_t>(in_force.seed);
+  info.threads = asked.threads;
+  info.preset = asked.preset;
+  info.prior = asked.guess;
   info.prior_source = "given by the caller";
   info.options = config::toJson(optionTable(in_force));
   return report::registrationJson(CloudStream(fixed), moving, found, monitor, info);
@@ -181,31 +180,29 @@ const char* toString(Registration::Status status) {
   return "rejected";
 }
 
-Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Transform& guess,
-                            const Options& options, const Control& control,
-                            const std::vector<Eigen::Vector3d>& path) {
-  requireProcessor();
-  requireWhole(fixed);
-  requireWhole(moving);
-  const ThreadLimit limit = threadLimit(control);
-  const Options::Values& values = options.values();
-  refuseIdle(values);
-  const pipeline::RegistrationOptions in_force = pipeline::resolved(values.options);
-  Monitor monitor(control.stop, [&](Stage stage) {
-    if (control.on_stage) control.on_stage(nameOf(stage));
+pipeline::RegistrationOptions optionsInForce(const Options& options) {
+  refuseIdle(options.values());
+  return pipeline::resolved(options.values().options);
+}
+
+Monitor monitorFor(const Control& control) {
+  return Monitor(control.stop, [on_stage = control.on_stage](Stage stage) {
+    if (on_stage) on_stage(nameOf(stage));
   });
+}
+
+Registration finished(const Cloud& fixed, const Cloud& moving, pipeline::Registration found,
+                      const Asked& asked, const Monitor& monitor) {
   auto record = std::make_shared<Registration::Record>();
-  record->found =
-      pipeline::registerClouds(fixed, moving, Eigen::Affine3d(guess), in_force, monitor, {}, path);
-  record->evidence = in_force.evidence;
+  record->found = std::move(found);
+  record->evidence = asked.options.evidence;
   record->fixed_name = fixed.name;
   record->moving_name = moving.name;
   record->fixed_origin = fixed.origin;
   record->fixed_crs = fixed.crs;
   record->fixed_coloured = fixed.hasColour();
   record->moving_coloured = moving.hasColour();
-  record->report =
-      reportOf(fixed, moving, guess, in_force, values.preset, control, record->found, monitor);
+  record->report = reportOf(fixed, moving, record->found, asked, monitor);
   Registration result = publicResult(fixed, record->found);
   for (const StageTime& time : monitor.times()) {
     result.times.push_back({std::string(nameOf(time.stage)), time.seconds});
@@ -216,6 +213,20 @@ Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Trans
     result.deformation = deformationOf(moving, result.record);
   }
   return result;
+}
+
+Registration registerClouds(const Cloud& fixed, const Cloud& moving, const Transform& guess,
+                            const Options& options, const Control& control,
+                            const std::vector<Eigen::Vector3d>& path) {
+  requireProcessor();
+  requireWhole(fixed);
+  requireWhole(moving);
+  const ThreadLimit limit = threadLimit(control);
+  const Asked asked{guess, optionsInForce(options), options.preset(), control.threads};
+  Monitor monitor = monitorFor(control);
+  pipeline::Registration found = pipeline::registerClouds(fixed, moving, Eigen::Affine3d(guess),
+                                                          asked.options, monitor, {}, path);
+  return finished(fixed, moving, std::move(found), asked, monitor);
 }
 
 Cloud alignedCloud(const Cloud& moving, const Registration& registration) {

@@ -3,26 +3,6 @@
 namespace agricolmap::pipeline {
 namespace {
 
-/// Turns poses of the levelled frames into transforms of the files. Large coordinates cancel in
-/// double, at the very end.
-class FrameChange {
- public:
-  FrameChange(const CloudFacts& fixed, const Cloud& moving, const PairFrames& frames)
-      : fixed_(fixed), moving_(moving), frames_(frames) {}
-
-  Eigen::Affine3d local(const Eigen::Affine3d& levelled) const {
-    return frames_.levelled_from_fixed.inverse() * levelled * frames_.levelled_from_moving;
-  }
-  Eigen::Affine3d inFiles(const Eigen::Affine3d& local) const {
-    return Eigen::Translation3d(fixed_.origin) * local * Eigen::Translation3d(-moving_.origin);
-  }
-
- private:
-  const CloudFacts& fixed_;
-  const Cloud& moving_;
-  const PairFrames& frames_;
-};
-
 Transform transformOf(const CloudFacts& fixed, const PairMaps& maps, const FrameChange& change,
                       const Placed& placed, double scale) {
   const Eigen::Affine3d levelled = refine::liftPose(placed.pose, placed.heights);
@@ -66,7 +46,7 @@ Registration compose(const CloudFacts& fixed, const Cloud& moving, PairMaps maps
                      double scale, const RegistrationOptions& options) {
   Registration result;
   if (outcome.placed) {
-    const FrameChange change(fixed, moving, maps.frames);
+    const FrameChange change(fixed.origin, moving.origin, maps.frames);
     result.transform = transformOf(fixed, maps, change, *outcome.placed, scale);
     result.alternatives = alternativesTo(outcome, maps, change, options);
   }
