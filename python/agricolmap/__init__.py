@@ -40,6 +40,7 @@ from ._result import (
     Status,
     Uncertainty,
 )
+from ._stages import Pair, Place
 from ._transforms import read_matrix, read_path, write_matrix
 
 __version__ = _core.version()
@@ -64,8 +65,10 @@ __all__ = [
     "OptionInfo",
     "Options",
     "OutputError",
+    "Pair",
     "Parts",
     "PathLike",
+    "Place",
     "Plants",
     "Prior",
     "Registration",

@@ -139,3 +139,23 @@ def facts(
     threads: int,
     /,
 ) -> Dict[str, Any]: ...
+
+class Pair:
+    def maps(self) -> Tuple[Dict[str, Any], Dict[str, Any]]: ...
+    def locate(self, stop: Optional[Any], threads: int, /) -> List[Tuple[_Floats, float]]: ...
+    def refine(
+        self, places: List[Tuple[_Floats, float]], stop: Optional[Any], threads: int, /
+    ) -> List[Tuple[_Floats, float]]: ...
+    def judge(
+        self, places: List[Tuple[_Floats, float]], stop: Optional[Any], threads: int, /
+    ) -> Registration: ...
+
+def make_pair(
+    fixed: Cloud,
+    moving: Cloud,
+    guess: _Floats,
+    options: Options,
+    stop: Optional[Any],
+    threads: int,
+    /,
+) -> Pair: ...

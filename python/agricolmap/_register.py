@@ -69,7 +69,7 @@ def register(
     chosen = options_of(options)
     at_most = _arrays.count(threads, "threads")
     places = _path(path)
-    affine, warnings = _guess(guess, fixed, moving)
+    affine, warnings = guess_of(guess, fixed, moving)
     first, second = pair_of(fixed, moving)
     handle = _core.register(
         first._handle, second._handle, affine, chosen._handle, places, progress, stop, at_most
@@ -88,7 +88,7 @@ def _path(path: Any) -> Floats:
     return _arrays.points(array, "path")
 
 
-def _guess(guess: Any, fixed: Any, moving: Any) -> Tuple[Floats, List[str]]:
+def guess_of(guess: Any, fixed: Any, moving: Any) -> Tuple[Floats, List[str]]:
     """The guess, and what its caller should know of how it was come by."""
     if _arrays.is_path(guess):
         return _core.read_matrix(guess), []

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <agricolmap/cloud.hpp>
+#include <agricolmap/maps.hpp>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -37,11 +38,15 @@ py::array_t<Value> arrayOf(const std::vector<Value>& values, std::vector<py::ssi
 /// rows × columns × 3.
 Colours arrayOf(const std::vector<Rgb>& colours, py::ssize_t rows, py::ssize_t cols);
 
+/// All that a map has, by name.
+py::dict mapValuesOf(const CellMap& map);
+
 void bindClouds(py::module_& module);
 void bindField(py::module_& module);
 void bindMaps(py::module_& module);
 void bindOptions(py::module_& module);
 void bindRegistration(py::module_& module);
+void bindStages(py::module_& module);
 /// The library's errors become those of the package.
 void translateErrors();
 

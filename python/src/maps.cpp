@@ -5,9 +5,8 @@
 #include "waiting.hpp"
 
 namespace agricolmap::python {
-namespace {
 
-py::dict valuesOf(const CellMap& map) {
+py::dict mapValuesOf(const CellMap& map) {
   const std::vector<py::ssize_t> shape{map.rows, map.cols};
   py::dict values;
   values["cell_m"] = map.cell_m;
@@ -19,19 +18,17 @@ py::dict valuesOf(const CellMap& map) {
   return values;
 }
 
-}  // namespace
-
 void bindMaps(py::module_& module) {
   module.def("compared_maps", [](const Registration& registration) {
     const ComparedMaps maps = [&] {
       const py::gil_scoped_release release;
       return comparedMaps(registration);
     }();
-    return py::make_tuple(valuesOf(maps.fixed), valuesOf(maps.moving));
+    return py::make_tuple(mapValuesOf(maps.fixed), mapValuesOf(maps.moving));
   });
   module.def("map_cloud", [](const std::shared_ptr<Cloud>& cloud, const Options& options,
                              const py::object& stop, int threads) {
-    return valuesOf(
+    return mapValuesOf(
         waitFor({py::none(), stop}, threads, [&, chosen = options](const Control& control) {
           return mapCloud(*cloud, chosen, control);
         }));

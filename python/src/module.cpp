@@ -113,5 +113,6 @@ PYBIND11_MODULE(_core, module) {
   python::bindOptions(module);
   python::bindRegistration(module);
   python::bindMaps(module);
+  python::bindStages(module);
   python::bindField(module);
 }
