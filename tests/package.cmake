@@ -1,6 +1,6 @@
 # The library from outside: its tests see the public headers and the shared libraries alone, and the
 # examples are a project that finds what `cmake --install` put down.
-add_executable(library_test library_test.cpp)
+add_executable(library_test library_test.cpp library_ros_test.cpp)
 target_compile_definitions(library_test PRIVATE
   AGRICOLMAP_PAIRS="${PAIRS}" AGRICOLMAP_EXPECTED_VERSION="${PROJECT_VERSION}")
 target_link_libraries(library_test PRIVATE
