@@ -26,7 +26,7 @@ constexpr double kLeastSpread = 0.02;
 /// What gives rise to a warning.
 constexpr double kFarLeftOut = 2.0;      ///< left-out residuals in residuals; six pairs have 1.8
 constexpr double kLooseScale = 0.01;     ///< deviation of a scale
-constexpr double kLargeResidual = 0.05;  ///< as far off as a registration may be (paper, V-B) [m]
+constexpr double kLargeResidual = 0.05;  ///< as far off as a registration may be (paper, V-A) [m]
 
 /// Throws unless the pairs with weight determine the model.
 void requireSpread(const ControlFit& problem, std::span<const double> weights, ControlModel model,

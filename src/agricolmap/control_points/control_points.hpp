@@ -1,5 +1,5 @@
 // The true transformation from pairs of places that somebody picked by hand in both maps, as the
-// authors of the paper did for their data (Sec. V-B), with the residuals that a surveyor asks for.
+// authors of the paper did for their data (Sec. V-A), with the residuals that a surveyor asks for.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -275,9 +275,14 @@ class Gridder {
 
 GridMap makeGridMap(const PointStream& cloud, const Eigen::Affine3d& levelled_from_local,
                     const Box2& window, const GridOptions& options) {
-  Gridder gridder(frameFor(window, options.cell), levelled_from_local, options);
-  cloud.passNear(levelled_from_local, window, [&](const PointBatch& batch) { gridder.add(batch); });
-  GridMap map = std::move(gridder).finish();
+  GridMap map;
+  // Of boxes that lie apart nothing is left in common.
+  if (!window.isEmpty()) {
+    Gridder gridder(frameFor(window, options.cell), levelled_from_local, options);
+    cloud.passNear(levelled_from_local, window,
+                   [&](const PointBatch& batch) { gridder.add(batch); });
+    map = std::move(gridder).finish();
+  }
   if (map.points == 0) {
     throw InputError(
         fmt::format(

@@ -98,6 +98,19 @@ TEST(GridMap, RefusesMapsThatTakeTooMuchMemoryAndNamesTheRemedy) {
   }
 }
 
+TEST(GridMap, BoxesThatLieApartHaveNoWindow) {
+  // Coarse cells, of which one beside both boxes would catch points.
+  GridOptions options;
+  options.cell = 1.0;
+  const Box2 window = box(0, 0, 3, 2).intersection(box(3.2, 0, 6, 2));
+  try {
+    makeGridMap(randomCloud(1000), Eigen::Affine3d::Identity(), window, options);
+    ADD_FAILURE() << "a map of nothing";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.remedy(), Remedy::kInitialGuess);
+  }
+}
+
 TEST(GridMap, IsTheSameOnOneThread) {
   const Cloud cloud = randomCloud(200000);
   const Box2 window = box(0, 0, 3, 2);

@@ -140,8 +140,8 @@ Levelling levelFrom(const Eigen::Affine3d& start, const CloudFacts& cloud,
       for (const Eigen::Vector3d& p : points) box.extend(p);
       throw InputError(fmt::format(
           "{}: only {} ground cells of {} m hold 3 points or more, of {} points over {:.5g} x "
-          "{:.5g} m: are its coordinates metres? If they are, the cloud is too sparse or too small "
-          "to level (reduce level.cell)",
+          "{:.5g} m: are its coordinates metres? If they are, the cloud is too sparse (enlarge "
+          "level.cell) or too small (reduce it) to level",
           cloud.name, low.size(), options.cell, cloud.points, box.sizes().x(), box.sizes().y()));
     }
     const GroundPlane plane = fitPlane(low, centre, options.cell);

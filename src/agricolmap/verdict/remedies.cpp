@@ -95,12 +95,13 @@ std::vector<std::string> remediesFor(const Verdict& verdict, const Finding& find
   std::vector<std::string> remedies;
   if (verdict.status == Status::kAccepted) return remedies;
   adviseLimits(finding, space, options, remedies);
+  const bool beyond_limits = !remedies.empty();  // where no part of it can be right
   const Evidence& evidence = finding.evidence;
   if (verdict.status == Status::kAmbiguous || verdict.place_probability < kRightPlace) {
     adviseLength(evidence, remedies);
     adviseGuess(space.uncertainty, remedies);
   }
-  if (evidence.parts.apart()) {
+  if (evidence.parts.apart() && !beyond_limits) {
     remedies.emplace_back("register the strip in parts, or mend its odometry where they join");
   } else if (remedies.empty() || verdict.place_probability >= kRightPlace) {
     remedies.emplace_back(

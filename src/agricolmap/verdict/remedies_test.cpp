@@ -76,6 +76,14 @@ TEST(Remedies, AnswersBeyondTheGuessNameTheLimit) {
   EXPECT_THAT(adviceFor(finding), Contains(HasSubstr("shows the whole strip")));
 }
 
+TEST(Remedies, PartsOfWhatCannotBeRightAreNoAdvice) {
+  Finding finding = unsureFinding();
+  finding.evidence.parts.rms = 0.3;
+  EXPECT_THAT(adviceFor(finding), Contains(HasSubstr("in parts")));
+  finding.pose.linear() = Eigen::Rotation2Dd(0.5).toRotationMatrix();
+  EXPECT_THAT(adviceFor(finding), Each(Not(HasSubstr("in parts"))));
+}
+
 TEST(Remedies, ARightPlaceThatDoesNotFitNeedsOtherMaps) {
   Verdict verdict;
   verdict.place_probability = 0.97;

@@ -55,7 +55,7 @@ void requireMemory(const Part& part, const GridFrame& frame, const DescribeOptio
   if (bytes <= options.max_memory * kGibi) return;
   throw UsageError(fmt::format(
       "descriptors of a map of {:.0f} x {:.0f} m in cells of {:.3g} m need {:.1f} GiB of memory, "
-      "more than the {:.3g} GiB of describe.max_memory; tighten the prior, enlarge the cells "
+      "more than the {:.3g} GiB of flow.describe.max_memory; tighten the prior, enlarge the cells "
       "or raise the limit",
       part.cols * frame.cell, part.rows * frame.cell, frame.cell, bytes / kGibi,
       options.max_memory));
