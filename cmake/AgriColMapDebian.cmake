@@ -1,4 +1,5 @@
-# Debian packages by CPack: agricolmap (the program), libagricolmap<version> and libagricolmap-dev.
+# Debian packages by CPack: agricolmap (the program), libagricolmap<version>, libagricolmap-dev and, where
+# it is built, python3-agricolmap.
 # scripts/package builds and makes them. What they depend on is read from what was linked, so that
 # they fit the Debian that they were made on.
 set(CPACK_GENERATOR DEB)
@@ -38,10 +39,23 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libagricolmap${so_version} (= ${PROJECT_VERSION}), agricolmap (= ${PROJECT_VERSION}), libeigen3-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers of the C++ library, and the CMake package agricolmap.")
 
+set(packages program agricolmap library libagricolmap${so_version} development libagricolmap-dev)
+if(TARGET python_core)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  list(APPEND packages python python3-agricolmap)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-agricolmap)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  # Extension modules are for the one version that they were built for.
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "libagricolmap${so_version} (= ${PROJECT_VERSION}), python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), \
+python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The registration, maps and crop facts from Python, with NumPy arrays.")
+endif()
+
 # Each has its licence where Debian looks for it; the program what changed, too.
-set(components program agricolmap library libagricolmap${so_version} development libagricolmap-dev)
-while(components)
-  list(POP_FRONT components component package)
+while(packages)
+  list(POP_FRONT packages component package)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian-copyright RENAME copyright
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
 endwhile()
