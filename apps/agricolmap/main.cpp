@@ -106,8 +106,8 @@ ExitCode run(int argc, char** argv) {
       addBatchCommand(app, globals),    addConvertCommand(app, globals),
       addImportCommand(app, globals),   addApplyCommand(app, globals),
       addFuseCommand(app, globals),     addDiffCommand(app, globals),
-      addFactsCommand(app, globals),    addInfoCommand(app, globals),
-      addDocumentCommand(app, globals)};
+      addFactsCommand(app, globals),    addPrescribeCommand(app, globals),
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;
