@@ -107,7 +107,8 @@ ExitCode runPrescribe(const PrescribeArguments& arguments, const Globals& global
   io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   progress.step("read");
-  const PrescribeInput input = readPrescribeInput(arguments.source, arguments.layer, arguments.crs);
+  const PrescribeInput input =
+      readPrescribeInput(arguments.source, arguments.layer, arguments.crs, squares.least_seen);
   const prescribe::Earth earth = earthOf(input.crs, arguments.source);
   progress.step("plan");
   const prescribe::Plan plan = makePlan(arguments, input, squares, earth);

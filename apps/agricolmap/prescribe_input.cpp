@@ -102,11 +102,13 @@ PrescribeInput readMapLayer(const fs::path& folder, const std::string& layer,
   return readRaster(*path, layer, false, crs);
 }
 
-/// Squares of one size on multiples of it become the cells of a raster.
-PrescribeInput readSquares(const fs::path& folder, const std::string& field,
-                           const std::string& crs) {
+/// Squares of one size on multiples of it become the cells of a raster; those at the edge of which
+/// the map has shown too little stay empty.
+PrescribeInput readSquares(const fs::path& folder, const std::string& field, const std::string& crs,
+                           double least_seen) {
   const fs::path path = folder / kFacts;
   const io::ValuedPolygons squares = io::readValues(path, "grid", field);
+  const io::ValuedPolygons seen = io::readValues(path, "grid", "seen_m2");
   if (squares.polygons.empty()) {
     throw InputError(fmt::format("{}: has no squares", path.string()));
   }
@@ -133,16 +135,17 @@ PrescribeInput readSquares(const fs::path& folder, const std::string& field,
   input.frame.rows = static_cast<int>(count.y());
   input.values =
       Raster<float>(input.frame.rows, input.frame.cols, std::numeric_limits<float>::quiet_NaN());
-  for (const io::ValuedPolygon& square : squares.polygons) {
+  const double least = least_seen * input.frame.cell * input.frame.cell;
+  for (std::size_t i = 0; i < squares.polygons.size(); ++i) {
+    if (!(seen.polygons[i].value >= least)) continue;
+    const std::vector<Eigen::Vector2d>& corners = squares.polygons[i].corners;
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-    for (const Eigen::Vector2d& corner : square.corners) middle += corner;
-    const Eigen::Vector2d at =
-        input.frame.cellOf(middle / static_cast<double>(square.corners.size()));
+    for (const Eigen::Vector2d& corner : corners) middle += corner;
+    const Eigen::Vector2d at = input.frame.cellOf(middle / static_cast<double>(corners.size()));
     const auto col = static_cast<int>(std::lround(at.x()));
     const auto row = static_cast<int>(std::lround(at.y()));
-    if (input.values.contains(row, col)) {
-      input.values(row, col) = static_cast<float>(square.value);
-    }
+    if (!input.values.contains(row, col)) continue;
+    input.values(row, col) = static_cast<float>(squares.polygons[i].value);
   }
   input.crs = crsOfLayer(squares.crs.wkt, crs, path.string());
   input.layer = field;
@@ -152,7 +155,7 @@ PrescribeInput readSquares(const fs::path& folder, const std::string& field,
 }  // namespace
 
 PrescribeInput readPrescribeInput(const std::string& source, const std::string& layer,
-                                  const std::string& crs) {
+                                  const std::string& crs, double least_seen) {
   std::error_code error;
   if (!fs::is_directory(source, error)) return readRaster(source, layer, true, crs);
   if (!report::isSharedMap(source) && fs::exists(fs::path(source) / kFacts, error)) {
@@ -161,7 +164,7 @@ PrescribeInput readPrescribeInput(const std::string& source, const std::string& 
           "{}: say which field of its squares rates are to follow: --layer weed_share, cover, ...",
           source));
     }
-    return readSquares(source, layer, crs);
+    return readSquares(source, layer, crs, least_seen);
   }
   return readMapLayer(source, layer, crs);
 }

@@ -18,9 +18,10 @@ struct PrescribeInput {
 
 /// `source`: a map's folder and the layer's name in it; the folder of `facts` and a field of its
 /// squares; or a raster, whose band of that name, or only one, is taken. `crs`: of a source that
-/// says none. Throws InputError when there is no such layer, with those that there are; when it
-/// stands for no quantity; or when it lies nowhere on Earth.
+/// says none. `least_seen`: share of a square of facts that these must have seen. Throws InputError
+/// when there is no such layer, with those that there are; when it stands for no quantity; or when
+/// it lies nowhere on Earth.
 PrescribeInput readPrescribeInput(const std::string& source, const std::string& layer,
-                                  const std::string& crs);
+                                  const std::string& crs, double least_seen);
 
 }  // namespace agricolmap
