@@ -166,6 +166,47 @@ TEST_F(PrescribeTest, TakesTheSquaresOfFacts) {
                 3, {"facts.gpkg", "no field 'weeds'", "weed_share"});
 }
 
+TEST_F(PrescribeTest, TakesABandOfARaster) {
+  io::GeoLayer layer;
+  layer.frame = {{0.0, 0.0}, 0.5, 40, 40};
+  layer.origin = {620000.0, 5300000.0, 0.0};
+  layer.crs = "EPSG:32632";
+  layer.nodata = kNone;
+  const Raster<float> red(40, 40, 0.2F);
+  const Raster<float> ndvi(40, 40, 0.7F);
+  layer.bands = {{&red, "red", ""}, {&ndvi, "ndvi", ""}};
+  const std::string raster = inFolder("bands.tif");
+  io::writeLayer(raster, layer);
+  const std::vector<std::string> rates = {"--breaks", "0.5",      "--rates",      "9,8",
+                                          "--unit",   "seeds/m2", "--no-pictures"};
+  expectFailure(prescribe(raster, rates), 3, {"bands.tif", "--layer 'red' 'ndvi'"});
+  std::vector<std::string> chosen = prescribe(raster, rates);
+  chosen.insert(chosen.end(), {"--layer", "ndvi"});
+  run(chosen);
+  const nlohmann::json json = jsonOf(inFolder("out/prescription.json"));
+  EXPECT_EQ(json["classes"][0]["squares"], 0);
+  EXPECT_NEAR(json["classes"][1]["area_m2"], 400.0, 60.0);
+}
+
+TEST_F(PrescribeTest, OfHeadingZeroHasTheSquaresOfFacts) {
+  const std::string map = writeMap("map");
+  run(prescribe(map, {"--layer", "cover", "--rates", "5", "--unit", "kg/ha", "--width", "4",
+                      "--heading", "0", "--no-pictures"}));
+  const GDALDatasetUniquePtr file(
+      GDALDataset::Open(inFolder("out/prescription.shp").c_str(), GDAL_OF_VECTOR));
+  ASSERT_TRUE(file);
+  const OGRFeatureUniquePtr feature(file->GetLayer(0)->GetNextFeature());
+  std::vector<Eigen::Vector2d> corners;
+  const OGRLinearRing& ring = *feature->GetGeometryRef()->toPolygon()->getExteriorRing();
+  for (int i = 0; i < ring.getNumPoints(); ++i) corners.emplace_back(ring.getX(i), ring.getY(i));
+  const auto in_file = io::fromGeographic(*io::crsFromWkt("EPSG:32632"), corners);
+  ASSERT_TRUE(in_file);
+  for (const Eigen::Vector2d& corner : *in_file) {
+    EXPECT_NEAR(std::remainder(corner.x(), 4.0), 0.0, 1e-3);
+    EXPECT_NEAR(std::remainder(corner.y(), 4.0), 0.0, 1e-3);
+  }
+}
+
 TEST_F(PrescribeTest, NeedsAPlaceOnEarth) {
   const std::string map = writeMap("map", "");
   const std::vector<std::string> common = {"--layer", "cover", "--rates",      "5",
