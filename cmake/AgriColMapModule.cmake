@@ -69,6 +69,19 @@ function(agricolmap_module name)
   endif()
 endfunction()
 
+# agricolmap_revision(<target> <header> <constant> <otherwise> <folder>...): a target that keeps
+# generated/<header> at the state of the sources in these folders.
+function(agricolmap_revision target header constant otherwise)
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/generated/${header})
+  list(JOIN ARGN "," watched)
+  add_custom_target(${target}
+    COMMAND ${CMAKE_COMMAND} -DHEADER=${file} -DSOURCE=${PROJECT_SOURCE_DIR} -DNAME=${constant}
+            -DOTHERWISE=${otherwise} -DWATCHED=${watched}
+            -P ${PROJECT_SOURCE_DIR}/cmake/write_revision.cmake
+    BYPRODUCTS ${file}
+    VERBATIM)
+endfunction()
+
 # agricolmap_require_found(<package> <debian package> <option> <purpose>) ends with a remedy unless
 # the package was found.
 function(agricolmap_require_found package debian option purpose)

@@ -5,7 +5,8 @@ include(GNUInstallDirs)
 set(AGRICOLMAP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/agricolmap)
 
 # agricolmap_install(<component> <target>): the target, and its name for consumers, as a component of
-# the package: agricolmap::<EXPORT_NAME of the target>.
+# the package: agricolmap::<EXPORT_NAME of the target>. Debian packages are made of CMake's components
+# `program`, `library` and `development`.
 function(agricolmap_install component target)
   if(NOT AGRICOLMAP_INSTALL)
     return()
@@ -15,8 +16,15 @@ function(agricolmap_install component target)
   if(header_sets)
     set(headers FILE_SET HEADERS)
   endif()
-  install(TARGETS ${target} EXPORT agricolmap-${component} ${headers})
-  install(EXPORT agricolmap-${component} NAMESPACE agricolmap:: DESTINATION ${AGRICOLMAP_PACKAGE_DIR})
+  if(headers)
+    list(APPEND headers COMPONENT development)
+  endif()
+  install(TARGETS ${target} EXPORT agricolmap-${component}
+    RUNTIME COMPONENT program
+    LIBRARY COMPONENT library NAMELINK_COMPONENT development
+    ${headers})
+  install(EXPORT agricolmap-${component} NAMESPACE agricolmap:: DESTINATION ${AGRICOLMAP_PACKAGE_DIR}
+    COMPONENT development)
 endfunction()
 
 if(AGRICOLMAP_INSTALL)
@@ -30,5 +38,6 @@ if(AGRICOLMAP_INSTALL)
   install(FILES
     ${PROJECT_BINARY_DIR}/agricolmap-config.cmake
     ${PROJECT_BINARY_DIR}/agricolmap-config-version.cmake
-    DESTINATION ${AGRICOLMAP_PACKAGE_DIR})
+    DESTINATION ${AGRICOLMAP_PACKAGE_DIR}
+    COMPONENT development)
 endif()

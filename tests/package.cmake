@@ -1,6 +1,6 @@
 # The library from outside: its tests see the public headers and the shared libraries alone, and the
 # examples are a project that finds what `cmake --install` put down.
-add_executable(library_test library_test.cpp)
+add_executable(library_test library_test.cpp library_ros_test.cpp)
 target_compile_definitions(library_test PRIVATE
   AGRICOLMAP_PAIRS="${PAIRS}" AGRICOLMAP_EXPECTED_VERSION="${PROJECT_VERSION}")
 target_link_libraries(library_test PRIVATE
@@ -46,6 +46,7 @@ agricolmap_example(05_report_and_pictures georeferenced results)
 # Nothing of what the library is made of may show: neither in its symbols nor in its package.
 add_test(NAME library.shows_only_its_own
   COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DLIBRARY=$<TARGET_FILE:agricolmap_library>
+          -DSYMBOLS=${CMAKE_CURRENT_SOURCE_DIR}/library_symbols.txt
           -DPACKAGE=${INSTALLED} -P ${CMAKE_CURRENT_SOURCE_DIR}/check_package.cmake)
 set_tests_properties(library.shows_only_its_own PROPERTIES FIXTURES_REQUIRED library_installed)
 set_property(TEST library.install library.build_examples library.01_register

@@ -1,15 +1,22 @@
-// agricolmap document-options: docs/options.md, from the same tables as the command line.
+// What is written from the same tables and flags as the command line: docs/options.md, manual pages
+// and completions.
 #include <fmt/format.h>
+
+#include <memory>
+#include <string>
 
 #include "agricolmap/config/markdown.hpp"
 #include "agricolmap/crop/facts.hpp"
 #include "agricolmap/fuse/options.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/pipeline/options.hpp"
 #include "agricolmap/prescribe/lattice.hpp"
 #include "agricolmap/simulate/ortho/ortho_file.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 #include "common.hpp"
+#include "shell_files.hpp"
 
 namespace agricolmap {
 namespace {
@@ -62,12 +69,47 @@ ExitCode runDocument() {
   return ExitCode::kOk;
 }
 
+/// One page for the whole, one for each verb.
+void writeManuals(const CLI::App& app, const io::StagedOutput& output) {
+  io::writeText(output.path("agricolmap.1"), manualPage(app, nullptr));
+  for (const CLI::App* verb : verbsOf(app)) {
+    io::writeText(output.path("agricolmap-" + verb->get_name() + ".1"), manualPage(app, verb));
+  }
+}
+
 }  // namespace
 
+// For those who change options or make packages, not for those who set them: hidden from the help.
 CommandSlot addDocumentCommand(CLI::App& app, const Globals&) {
   CLI::App* command = app.add_subcommand("document-options", "Print docs/options.md");
-  command->group("");  // for those who change options, not for those who set them
+  command->group("");
   return {command, [] { return runDocument(); }};
+}
+
+CommandSlot addManualsCommand(CLI::App& app, const Globals& globals) {
+  CLI::App* command = app.add_subcommand("document-manuals", "Write manual pages");
+  command->group("");
+  auto folder = std::make_shared<std::string>();
+  command->add_option("FOLDER", *folder, "Where to")->required();
+  return {command, [&app, &globals, folder] {
+            io::StagedOutput output(*folder, globals.overwrite);
+            writeManuals(app, output);
+            output.commit();
+            return ExitCode::kOk;
+          }};
+}
+
+CommandSlot addCompletionCommand(CLI::App& app, const Globals&) {
+  CLI::App* command = app.add_subcommand("document-completion", "Print a shell's completions");
+  command->group("");
+  auto shell = std::make_shared<std::string>();
+  command->add_option("SHELL", *shell, "bash or zsh")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh"}));
+  return {command, [&app, shell] {
+            fmt::print("{}", *shell == "bash" ? bashCompletion(app) : zshCompletion(app));
+            return ExitCode::kOk;
+          }};
 }
 
 }  // namespace agricolmap

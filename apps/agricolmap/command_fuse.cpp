@@ -175,8 +175,8 @@ CommandSlot addFuseCommand(CLI::App& app, const Globals& globals) {
   arguments->files.addTo(*command);
   command->add_option("-o,--output", arguments->output, "Folder of the map")->required();
   command->add_option("--cloud-format", arguments->cloud,
-                      "Format of the fused cloud: copc, laz, las, none, or auto: copc where this "
-                      "build has LASzip, else las [auto]");
+                      "Format of the fused cloud: copc, laz, las, none, or auto: copc where there "
+                      "is LASzip, else las [auto]");
   command->add_option("--config", arguments->config, "YAML file with options");
   command->add_flag("--dump-config", arguments->dump_config,
                     "Print all options in force as YAML and stop");

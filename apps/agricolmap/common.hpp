@@ -50,6 +50,8 @@ CommandSlot addFactsCommand(CLI::App& app, const Globals& globals);
 CommandSlot addPrescribeCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);
+CommandSlot addManualsCommand(CLI::App& app, const Globals& globals);
+CommandSlot addCompletionCommand(CLI::App& app, const Globals& globals);
 
 /// How a pass over a cloud's points goes on: "30.0 of 100.0 million points, 25.0 million/s, 3 s
 /// left".

@@ -12,6 +12,7 @@
 #include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/cloud/move_file.hpp"
 #include "agricolmap/io/crs/crs.hpp"
+#include "agricolmap/io/las/las_writer.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/report/json/registration_file.hpp"
 #include "common.hpp"
@@ -232,11 +233,7 @@ MapClouds openClouds(const FuseFiles& files, MapPlan& plan, const io::SwappedFol
 }
 
 io::CloudFormat storedFormat() {
-#if defined(AGRICOLMAP_HAS_LASZIP)
-  return io::CloudFormat::kLaz;
-#else
-  return io::CloudFormat::kLas;
-#endif
+  return io::hasLaz() ? io::CloudFormat::kLaz : io::CloudFormat::kLas;
 }
 
 std::int32_t dateNamed(const std::string& flag, const std::string& text) {

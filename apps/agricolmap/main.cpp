@@ -21,6 +21,7 @@
 #include "agricolmap/io/raster/raster_file.hpp"
 #include "common.hpp"
 #include "option_flags.hpp"
+#include "program_revision.hpp"
 #include "support/signal_stop.hpp"
 
 namespace agricolmap {
@@ -84,6 +85,13 @@ std::string describeUnknown(const CLI::App& app, const CLI::App& verb) {
                      meant.empty() ? "" : fmt::format("is --{} meant? ", meant), see);
 }
 
+/// Of a build from a clone, with the commit, and a plus where sources were changed since.
+std::string versionText() {
+  const std::string revision = kProgramRevision;
+  return fmt::format("agricolmap {}{}", AGRICOLMAP_VERSION,
+                     revision.empty() ? "" : " (" + revision + ")");
+}
+
 ExitCode run(int argc, char** argv) {
   Globals globals;
   globals.command_line.assign(argv, argv + argc);
@@ -91,7 +99,7 @@ ExitCode run(int argc, char** argv) {
       "AgriColMap lays a ground robot's 3D map of a crop field into a drone's, to the centimetre."};
   app.name("agricolmap");
   app.footer(kFooter);
-  app.set_version_flag("--version", "agricolmap " AGRICOLMAP_VERSION);
+  app.set_version_flag("--version", versionText());
   app.require_subcommand(1);
   app.fallthrough();
   app.add_option("--threads", globals.threads, "Number of threads, 0: all cores [0]")
@@ -107,7 +115,8 @@ ExitCode run(int argc, char** argv) {
       addImportCommand(app, globals),   addApplyCommand(app, globals),
       addFuseCommand(app, globals),     addDiffCommand(app, globals),
       addFactsCommand(app, globals),    addPrescribeCommand(app, globals),
-      addInfoCommand(app, globals),     addDocumentCommand(app, globals)};
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals),
+      addManualsCommand(app, globals),  addCompletionCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 #include <glob.h>
+#include <regex.h>
 
 #include <memory>
-#include <regex>
+#include <optional>
 
 #include "agricolmap/core/error.hpp"
 
@@ -22,9 +23,9 @@ std::string quoted(const std::string& text) {
   return safe;
 }
 
-/// The expression that a pattern stands for, with a group for each wildcard.
-std::regex expressionOf(const std::string& pattern) {
-  std::string text;
+/// The extended regular expression that a pattern stands for, with a group for each wildcard.
+std::string expressionOf(const std::string& pattern) {
+  std::string text = "^";
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     const char c = pattern[i];
     const std::size_t close = c == '[' ? pattern.find(']', i + 2) : std::string::npos;
@@ -38,12 +39,43 @@ std::regex expressionOf(const std::string& pattern) {
       text += "([" + members + "])";
       i = close;
     } else {
-      if (std::string_view("\\^$.|+()[]{}").find(c) != std::string_view::npos) text += '\\';
+      if (std::string_view("\\^$.|+()[{").find(c) != std::string_view::npos) text += '\\';
       text += c;
     }
   }
-  return std::regex(text);
+  return text + "$";
 }
+
+/// What a pattern's wildcards stand for in names.
+class PatternParts {
+ public:
+  explicit PatternParts(const std::string& pattern)
+      : status_(::regcomp(&compiled_, expressionOf(pattern).c_str(), REG_EXTENDED)) {}
+  ~PatternParts() {
+    if (status_ == 0) ::regfree(&compiled_);
+  }
+  PatternParts(const PatternParts&) = delete;
+  PatternParts& operator=(const PatternParts&) = delete;
+
+  /// Nothing for names that it does not fit.
+  std::optional<std::vector<std::string>> of(const std::string& name) const {
+    if (status_ != 0) return std::nullopt;
+    std::vector<regmatch_t> groups(compiled_.re_nsub + 1);
+    if (::regexec(&compiled_, name.c_str(), groups.size(), groups.data(), 0) != 0) {
+      return std::nullopt;
+    }
+    std::vector<std::string> parts;
+    for (std::size_t i = 1; i < groups.size(); ++i) {
+      const auto begin = static_cast<std::size_t>(groups[i].rm_so);
+      parts.push_back(name.substr(begin, static_cast<std::size_t>(groups[i].rm_eo) - begin));
+    }
+    return parts;
+  }
+
+ private:
+  regex_t compiled_{};
+  int status_;
+};
 
 }  // namespace
 
@@ -59,14 +91,14 @@ std::vector<FoundFile> filesLike(const fs::path& folder, const std::string& patt
   const std::unique_ptr<glob_t, void (*)(glob_t*)> release(&found, ::globfree);
   std::vector<FoundFile> files;
   if (status != 0) return files;
-  const std::regex expression = expressionOf(pattern);
+  const PatternParts wildcards(pattern);
   for (std::size_t i = 0; i < found.gl_pathc; ++i) {
     const std::string path = found.gl_pathv[i];
-    const std::string name = path.substr(prefix.size());
-    std::smatch match;
     std::error_code ignored;
-    if (!fs::is_regular_file(path, ignored) || !std::regex_match(name, match, expression)) continue;
-    files.push_back({path, {match.begin() + 1, match.end()}});
+    if (!fs::is_regular_file(path, ignored)) continue;
+    if (const auto parts = wildcards.of(path.substr(prefix.size()))) {
+      files.push_back({path, *parts});
+    }
   }
   return files;
 }

@@ -18,7 +18,7 @@ using PointCounts = std::vector<std::uint64_t>;
 /// point source id, and as extra bytes `date` (YYYYMMDD), `plane_error`, `height_error` [m, NaN
 /// where nobody knows] and `raised`: by how much the point's height was changed [m]. COPC is sorted
 /// by way of `scratch`, a file as large as the points uncompressed, which is removed. Throws
-/// OutputError, and UsageError for LAZ and COPC in a build without LASzip.
+/// OutputError, and UsageError for LAZ and COPC without LASzip.
 PointCounts writeFusedCloud(const io::OutputPath& path, const io::OutputPath& scratch,
                             io::CloudFormat format, const SharedMap& map, const PointStream& fixed,
                             std::int32_t fixed_date, const std::vector<StripInput>& strips,

@@ -107,6 +107,9 @@ class LasWriter {
   LasTally tally_;
 };
 
+/// Whether LAZ and COPC can be read and written here.
+bool hasLaz();
+
 /// LASzip's record for points of this layout: what a LAZ file says of its compression. `variable`:
 /// its chunks have any number of points.
 std::vector<std::byte> lazRecord(const LasLayout& layout, bool variable);

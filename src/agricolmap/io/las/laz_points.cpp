@@ -2,7 +2,6 @@
 // our own: so every thread has a reader of its own, chunks of any size are found alike, and what a
 // file claims of itself reaches LASzip only after it was held against the file.
 #include <fmt/format.h>
-#include <laszip/laszip_api.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/io/las/las_points.hpp"
+#include "agricolmap/io/las/laszip_library.hpp"
 #include "agricolmap/io/las/laz_chunks.hpp"
 
 namespace agricolmap::io {
@@ -77,25 +77,25 @@ class TwoPieces : public std::streambuf {
 /// LASzip's reader, closed and freed.
 class Reader {
  public:
-  Reader(std::istream& stream, LasWanted wanted) {
-    if (laszip_create(&reader_) != 0) throw Error(ErrorKind::kInternal, "LASzip cannot be used");
+  Reader(const LaszipLibrary& library, std::istream& stream, LasWanted wanted) : lib_(library) {
+    if (lib_.create(&reader_) != 0) throw Error(ErrorKind::kInternal, "LASzip cannot be used");
     try {
       choose(wanted);
       open(stream);
     } catch (...) {
-      laszip_destroy(reader_);
+      lib_.destroy(reader_);
       throw;
     }
   }
   ~Reader() {
-    laszip_close_reader(reader_);
-    laszip_destroy(reader_);
+    lib_.close_reader(reader_);
+    lib_.destroy(reader_);
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
   /// False when the bytes are none that a compressor writes.
-  bool next() { return laszip_read_point(reader_) == 0; }
+  bool next() { return lib_.read_point(reader_) == 0; }
   const laszip_point& point() const { return *point_; }
 
  private:
@@ -106,17 +106,18 @@ class Reader {
               laszip_DECOMPRESS_SELECTIVE_FLAGS;
     }
     if (wanted == LasWanted::kPlaceColours) parts |= laszip_DECOMPRESS_SELECTIVE_RGB;
-    laszip_decompress_selective(reader_, parts);
+    lib_.decompress_selective(reader_, parts);
   }
   void open(std::istream& stream) {
     laszip_BOOL compressed = 0;
-    if (laszip_open_reader_stream(reader_, stream, &compressed) != 0 ||
-        laszip_get_point_pointer(reader_, &point_) != 0) {
+    if (lib_.open_reader_stream(reader_, stream, &compressed) != 0 ||
+        lib_.get_point_pointer(reader_, &point_) != 0) {
       laszip_CHAR* text = nullptr;
-      laszip_get_error(reader_, &text);
+      lib_.get_error(reader_, &text);
       throw InputError(text == nullptr ? "LASzip cannot read it" : text);
     }
   }
+  const LaszipLibrary& lib_;
   laszip_POINTER reader_ = nullptr;
   laszip_point* point_ = nullptr;
 };
@@ -160,9 +161,9 @@ void storeRecord(const laszip_point& point, const LasLayout& layout, bool all, s
 
 class CompressedPoints : public LasPoints {
  public:
-  CompressedPoints(std::span<const std::byte> bytes, const LasHeader& header,
-                   const std::string& name)
-      : layout_(header.layout), name_(name), table_(lazChunks(bytes, header, name)) {
+  CompressedPoints(const LaszipLibrary& library, std::span<const std::byte> bytes,
+                   const LasHeader& header, const std::string& name)
+      : lib_(library), layout_(header.layout), name_(name), table_(lazChunks(bytes, header, name)) {
     for (const LazChunk& chunk : table_.chunks) {
       if (chunk.points > std::numeric_limits<std::int32_t>::max()) {
         throw InputError(name + ": has more points in a chunk than can be read");
@@ -186,7 +187,7 @@ class CompressedPoints : public LasPoints {
     const std::vector<std::byte> head = headOf(from.points);
     TwoPieces pieces(head, from.bytes);
     std::istream stream(&pieces);
-    Reader reader(stream, wanted);
+    Reader reader(lib_, stream, wanted);
     std::vector<std::byte> block(kBlock * layout_.length);
     for (std::size_t done = 0; done < from.points;) {
       throwIfInterrupted();
@@ -239,6 +240,7 @@ class CompressedPoints : public LasPoints {
     return file;
   }
 
+  const LaszipLibrary& lib_;
   LasLayout layout_;
   std::string name_;
   LazChunks table_;
@@ -248,7 +250,12 @@ class CompressedPoints : public LasPoints {
 
 std::unique_ptr<LasPoints> lazPoints(std::span<const std::byte> bytes, const LasHeader& header,
                                      const std::string& name) {
-  return std::make_unique<CompressedPoints>(bytes, header, name);
+  const LaszipLibrary* library = laszip();
+  if (library == nullptr) {
+    throw InputError(
+        fmt::format("{}: is compressed (LAZ), and {}give uncompressed LAS", name, kNoLaszip));
+  }
+  return std::make_unique<CompressedPoints>(*library, bytes, header, name);
 }
 
 }  // namespace agricolmap::io

@@ -1,12 +1,11 @@
 // LAZ by LASzip, which compresses one chunk at a time: all else of the file is the LasWriter's.
-#include <laszip/laszip_api.h>
-
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/las/las_writer.hpp"
+#include "agricolmap/io/las/laszip_library.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -19,31 +18,41 @@ constexpr std::uint32_t kVariable = 0xFFFFFFFFU;
 /// LASzip's writer, freed.
 class Writer {
  public:
-  explicit Writer(const LasLayout& layout) {
-    if (laszip_create(&writer_) != 0) throw Error(ErrorKind::kInternal, "LASzip cannot be used");
+  explicit Writer(const LasLayout& layout) : lib_(writing()) {
+    if (lib_.create(&writer_) != 0) throw Error(ErrorKind::kInternal, "LASzip cannot be used");
     try {
-      check(laszip_set_point_type_and_size(writer_, static_cast<laszip_U8>(layout.format),
-                                           static_cast<laszip_U16>(layout.length)));
-      check(laszip_request_native_extension(writer_, 1));
+      check(lib_.set_point_type_and_size(writer_, static_cast<laszip_U8>(layout.format),
+                                         static_cast<laszip_U16>(layout.length)));
+      check(lib_.request_native_extension(writer_, 1));
     } catch (...) {
-      laszip_destroy(writer_);
+      lib_.destroy(writer_);
       throw;
     }
   }
-  ~Writer() { laszip_destroy(writer_); }
+  ~Writer() { lib_.destroy(writer_); }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
   laszip_POINTER get() const { return writer_; }
+  const LaszipLibrary& lib() const { return lib_; }
   void check(laszip_I32 failed) const {
     if (failed == 0) return;
     laszip_CHAR* text = nullptr;
-    laszip_get_error(writer_, &text);
+    lib_.get_error(writer_, &text);
     throw OutputError(text == nullptr ? std::string("LASzip failed")
                                       : std::string("LASzip: ") + text);
   }
 
  private:
+  static const LaszipLibrary& writing() {
+    const LaszipLibrary* library = laszip();
+    if (library == nullptr) {
+      throw UsageError(std::string("writing LAZ and COPC needs LASzip: ") + kNoLaszip +
+                       "write LAS");
+    }
+    return *library;
+  }
+  const LaszipLibrary& lib_;
   laszip_POINTER writer_ = nullptr;
 };
 
@@ -94,7 +103,7 @@ std::vector<std::byte> lazRecord(const LasLayout& layout, bool variable) {
   const Writer writer(layout);
   laszip_U8* bytes = nullptr;
   laszip_U32 size = 0;
-  writer.check(laszip_create_laszip_vlr(writer.get(), &bytes, &size));
+  writer.check(writer.lib().create_laszip_vlr(writer.get(), &bytes, &size));
   const auto all = std::as_bytes(std::span(bytes, size)).subspan(kRecordHeader);
   std::vector<std::byte> record(all.begin(), all.end());
   if (variable) storeLe(&record.at(kChunkSize), kVariable);
@@ -105,15 +114,15 @@ std::vector<std::byte> lazChunk(const std::byte* records, std::size_t count,
                                 const LasLayout& layout) {
   std::ostringstream stream;
   const Writer writer(layout);
-  writer.check(laszip_set_chunk_size(writer.get(), static_cast<laszip_U32>(count)));
-  writer.check(laszip_open_writer_stream(writer.get(), stream, 1, 1));
+  writer.check(writer.lib().set_chunk_size(writer.get(), static_cast<laszip_U32>(count)));
+  writer.check(writer.lib().open_writer_stream(writer.get(), stream, 1, 1));
   laszip_point* point = nullptr;
-  writer.check(laszip_get_point_pointer(writer.get(), &point));
+  writer.check(writer.lib().get_point_pointer(writer.get(), &point));
   for (std::size_t i = 0; i < count; ++i) {
     loadRecord(records + i * layout.length, layout, *point);
-    writer.check(laszip_write_point(writer.get()));
+    writer.check(writer.lib().write_point(writer.get()));
   }
-  writer.check(laszip_close_writer(writer.get()));
+  writer.check(writer.lib().close_writer(writer.get()));
   // A file of this chunk alone: where its table of chunks is, the chunk, the table.
   const std::string file = std::move(stream).str();
   const auto bytes = std::as_bytes(std::span(file));

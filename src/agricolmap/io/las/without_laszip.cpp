@@ -7,6 +7,8 @@
 
 namespace agricolmap::io {
 
+bool hasLaz() { return false; }
+
 std::unique_ptr<LasPoints> lazPoints(std::span<const std::byte> /*bytes*/,
                                      const LasHeader& /*header*/, const std::string& name) {
   throw InputError(fmt::format(

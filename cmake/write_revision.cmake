@@ -1,7 +1,9 @@
-# Writes ${HEADER} with the state of the sources that rows depend on, so that no campaign mixes rows
-# of different code. Called at every build; touches the header only when it changes.
-set(revision unknown)
-set(watched src experiments/pairs experiments/methods experiments/runner ":(exclude)*_test.cpp")
+# Writes ${HEADER} with a constant ${NAME}: the newest commit of the sources below ${WATCHED}, tests left out,
+# with a plus and a digest where they differ from it; ${OTHERWISE} where that is not to be had. Called at
+# every build by what agricolmap_revision() makes; touches the header only when it changes.
+set(revision "${OTHERWISE}")
+string(REPLACE "," ";" watched "${WATCHED}")
+list(APPEND watched ":(exclude)*_test.cpp")
 find_package(Git QUIET)
 if(Git_FOUND)
   execute_process(COMMAND ${GIT_EXECUTABLE} log -1 --format=%h -- ${watched}
@@ -18,7 +20,7 @@ if(Git_FOUND)
     endif()
   endif()
 endif()
-set(text "#pragma once\n\ninline constexpr const char* kRevision = \"${revision}\";\n")
+set(text "#pragma once\n\ninline constexpr const char* ${NAME} = \"${revision}\";\n")
 if(EXISTS ${HEADER})
   file(READ ${HEADER} before)
 endif()
