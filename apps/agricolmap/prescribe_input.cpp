@@ -50,11 +50,11 @@ Crs crsOfLayer(const std::string& own, const std::string& given, const std::stri
 }
 
 /// Longitudes, feet and Web Mercator are none of the metres that squares are made of.
-void requireMetres(const io::LayerShape& shape, const Crs& crs) {
+void requireMetres(const std::string& name, const PrescribeInput& input) {
   Eigen::Affine2d world_from_pixel = Eigen::Affine2d::Identity();
-  world_from_pixel.linear().diagonal() << shape.frame.cell, -shape.frame.cell;
-  world_from_pixel.translation() = shape.origin.head<2>() + shape.frame.corner;
-  io::checkMetres(shape.name, {world_from_pixel, crs.wkt});
+  world_from_pixel.linear().diagonal() << input.frame.cell, -input.frame.cell;
+  world_from_pixel.translation() = input.frame.corner;
+  io::checkMetres(name, {world_from_pixel, input.crs.wkt});
 }
 
 PrescribeInput readRaster(const fs::path& path, const std::string& layer, bool by_band,
@@ -73,9 +73,9 @@ PrescribeInput readRaster(const fs::path& path, const std::string& layer, bool b
   }
   PrescribeInput input;
   input.crs = crsOfLayer(read.shape.crs, crs, path.string());
-  requireMetres(read.shape, input.crs);
   input.frame = read.shape.frame;
   input.frame.corner += read.shape.origin.head<2>();
+  requireMetres(path.string(), input);
   input.layer = layer.empty() ? path.stem().string() : layer;
   input.unit = read.shape.units[band];
   input.values = std::move(read.bands[band]);
@@ -148,6 +148,7 @@ PrescribeInput readSquares(const fs::path& folder, const std::string& field, con
     input.values(row, col) = static_cast<float>(squares.polygons[i].value);
   }
   input.crs = crsOfLayer(squares.crs.wkt, crs, path.string());
+  requireMetres(path.string(), input);
   input.layer = field;
   return input;
 }
