@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/prescribe/test_earth.hpp"
 

@@ -160,9 +160,10 @@ void drawFigures(PictureCanvas& canvas, const Eigen::Vector2d& at,
   const double column = 1.0 * kSideWidth / kFigureColumns;
   const TextStyle small{12.0, palette::kFaint, false, Align::kLeft};
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    const auto across = static_cast<double>(i % kFigureColumns);
-    const auto down = static_cast<double>(i / kFigureColumns);
-    Eigen::Vector2d place = at + Eigen::Vector2d(across * column, down * kFigureHeight);
+    const std::size_t across = i % kFigureColumns;
+    const std::size_t down = i / kFigureColumns;
+    Eigen::Vector2d place = at + Eigen::Vector2d(column * static_cast<double>(across),
+                                                 kFigureHeight * static_cast<double>(down));
     canvas.text(place, figures[i].value, {19.0, palette::kInk, true, Align::kLeft});
     for (const std::string& line : canvas.wrapped(figures[i].meaning, column - 12.0, small)) {
       place.y() += 15.0;

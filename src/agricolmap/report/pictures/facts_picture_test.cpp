@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "agricolmap/crop/facts.hpp"
 #include "agricolmap/crop/test_crop.hpp"
 #include "agricolmap/report/draw/test_picture.hpp"
