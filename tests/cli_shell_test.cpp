@@ -43,7 +43,9 @@ TEST_F(ShellTest, EveryVerbHasAManualPage) {
   const std::string whole = page("agricolmap.1");
   for (const std::string& name : entries("man")) {
     const std::string verb = name.substr(0, name.find(".1"));
-    if (verb != "agricolmap") EXPECT_THAT(whole, HasSubstr("fB" + verb + "fR(1)"));
+    if (verb != "agricolmap") {
+      EXPECT_THAT(whole, HasSubstr("fB" + verb + "fR(1)"));
+    }
     EXPECT_THAT(page(name), HasSubstr("EXIT STATUS"));
   }
   const std::string verb = page("agricolmap-register.1");

@@ -12,6 +12,7 @@
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/raster/raster_import.hpp"
 #include "agricolmap/pipeline/options.hpp"
+#include "agricolmap/prescribe/lattice.hpp"
 #include "agricolmap/simulate/ortho/ortho_file.hpp"
 #include "agricolmap/simulate/simulation_options.hpp"
 #include "common.hpp"
@@ -63,6 +64,8 @@ ExitCode runDocument() {
       "convert and import", "From an orthomosaic and a surface model to a cloud; flags only.");
   printSection<fuse::FuseOptions>("fuse", "One map of a drone's cloud and strips.");
   printSection<crop::FactsOptions>("facts", "What is looked for on a field; flags only.");
+  printSection<prescribe::SquareOptions>("prescribe",
+                                         "The squares that get one rate each; flags only.");
   return ExitCode::kOk;
 }
 

@@ -47,6 +47,7 @@ CommandSlot addConvertCommand(CLI::App& app, const Globals& globals);
 CommandSlot addImportCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDiffCommand(CLI::App& app, const Globals& globals);
 CommandSlot addFactsCommand(CLI::App& app, const Globals& globals);
+CommandSlot addPrescribeCommand(CLI::App& app, const Globals& globals);
 CommandSlot addInfoCommand(CLI::App& app, const Globals& globals);
 CommandSlot addDocumentCommand(CLI::App& app, const Globals& globals);
 CommandSlot addManualsCommand(CLI::App& app, const Globals& globals);

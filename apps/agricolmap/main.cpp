@@ -109,14 +109,14 @@ ExitCode run(int argc, char** argv) {
   app.add_flag("-q,--quiet", globals.quiet, "Say nothing but errors");
   app.add_flag("--overwrite", globals.overwrite, "Replace results that exist");
   const std::vector<CommandSlot> commands = {
-      addRegisterCommand(app, globals),  addSimulateCommand(app, globals),
-      addEvaluateCommand(app, globals),  addControlPointsCommand(app, globals),
-      addBatchCommand(app, globals),     addConvertCommand(app, globals),
-      addImportCommand(app, globals),    addApplyCommand(app, globals),
-      addFuseCommand(app, globals),      addDiffCommand(app, globals),
-      addFactsCommand(app, globals),     addInfoCommand(app, globals),
-      addDocumentCommand(app, globals),  addManualsCommand(app, globals),
-      addCompletionCommand(app, globals)};
+      addRegisterCommand(app, globals), addSimulateCommand(app, globals),
+      addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
+      addBatchCommand(app, globals),    addConvertCommand(app, globals),
+      addImportCommand(app, globals),   addApplyCommand(app, globals),
+      addFuseCommand(app, globals),     addDiffCommand(app, globals),
+      addFactsCommand(app, globals),    addPrescribeCommand(app, globals),
+      addInfoCommand(app, globals),     addDocumentCommand(app, globals),
+      addManualsCommand(app, globals),  addCompletionCommand(app, globals)};
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;

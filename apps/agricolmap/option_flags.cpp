@@ -33,12 +33,13 @@ void addHelpAll(CLI::App& app, const std::shared_ptr<Hidden>& hidden) {
         throw CLI::CallForHelp();
       },
       "Print this help message with all options and exit");
-  app.footer([hidden, verb = app.get_name()] {
+  app.footer([hidden, &app] {
     if (hidden->empty()) return std::string();
+    const bool dumps = app.get_option_no_throw("--dump-config") != nullptr;
     return fmt::format(
         "{} more options, for those who change how a stage works: agricolmap {} --help-all\n"
-        "or docs/options.md; --dump-config writes them all into a file.\n",
-        hidden->size(), verb);
+        "or docs/options.md{}.\n",
+        hidden->size(), app.get_name(), dumps ? "; --dump-config writes them all into a file" : "");
   });
 }
 

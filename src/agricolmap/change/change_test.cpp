@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "agricolmap/change/totals.hpp"
+#include "agricolmap/core/random.hpp"
 
 namespace agricolmap::change {
 namespace {
@@ -77,17 +77,17 @@ TEST(HeightChange, HasALevelOfItsOwnAtEveryCell) {
 
 /// What is expected of the errors is what they are: noise of each cell, and one shift of each map.
 TEST(HeightChange, CallsOneInTwentyUnchangedCellsChanged) {
-  std::mt19937 random(7);
-  std::normal_distribution<float> normal;
+  Random random(7);
+  const auto noise = [&](double sigma) { return static_cast<float>(random.normal(sigma)); };
   std::size_t called = 0;
   std::size_t all = 0;
   constexpr int kTrials = 400;
   for (int trial = 0; trial < kTrials; ++trial) {
     MapHeights a = flatMap(12, 12, 0.0F, 0.0F, 0.02F);
     MapHeights b = flatMap(12, 12, 0.0F, 0.0F, 0.03F);
-    const float shift = 0.024F * normal(random);
-    for (float& value : a.surface) value += 0.02F * normal(random);
-    for (float& value : b.surface) value += shift + 0.018F * normal(random);
+    const float shift = noise(0.024);
+    for (float& value : a.surface) value += noise(0.02);
+    for (float& value : b.surface) value += shift + noise(0.018);
     const HeightChange change = heightChange(a, b, kCell);
     for (const float significant : change.significant) called += significant > 0.0F ? 1U : 0U;
     all += change.significant.size();

@@ -12,7 +12,7 @@ template <typename T>
 class Raster {
  public:
   Raster() = default;
-  Raster(int rows, int cols, T fill = T{})
+  Raster(int rows, int cols, T fill = T{})  // NOLINT(performance-unnecessary-value-param): numbers
       : rows_(rows), cols_(cols), data_(static_cast<std::size_t>(rows) * cols, fill) {}
 
   int rows() const { return rows_; }

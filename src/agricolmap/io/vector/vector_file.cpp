@@ -4,23 +4,16 @@
 #include <ogr_geometry.h>
 #include <ogrsf_frmts.h>
 
-#include <array>
 #include <cmath>
 #include <memory>
-#include <mutex>
 
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/crs/srs.hpp"
+#include "agricolmap/io/vector/ogr_support.hpp"
 #include "agricolmap/io/vector/vector_layer.hpp"
 
 namespace agricolmap::io {
 
 namespace {
-
-void registerDrivers() {
-  static std::once_flag registered;
-  std::call_once(registered, [] { GDALAllRegister(); });
-}
 
 [[noreturn]] void failWrite(const OutputPath& path, std::string_view what) {
   const std::string reason = CPLGetLastErrorMsg();
@@ -40,8 +33,15 @@ OGRwkbGeometryType typeOf(GeometryKind kind) {
   return wkbUnknown;
 }
 
-std::unique_ptr<OGRGeometry> geometryOf(GeometryKind kind,
-                                        const std::vector<Eigen::Vector2d>& points) {
+void addRing(OGRPolygon& polygon, const std::vector<Eigen::Vector2d>& points) {
+  OGRLinearRing ring;
+  for (const Eigen::Vector2d& p : points) ring.addPoint(p.x(), p.y());
+  ring.closeRings();
+  polygon.addRing(&ring);
+}
+
+std::unique_ptr<OGRGeometry> geometryOf(GeometryKind kind, const VectorFeature& feature) {
+  const std::vector<Eigen::Vector2d>& points = feature.points;
   if (kind == GeometryKind::kPoint) {
     return std::make_unique<OGRPoint>(points.front().x(), points.front().y());
   }
@@ -50,11 +50,9 @@ std::unique_ptr<OGRGeometry> geometryOf(GeometryKind kind,
     for (const Eigen::Vector2d& p : points) line->addPoint(p.x(), p.y());
     return line;
   }
-  OGRLinearRing ring;
-  for (const Eigen::Vector2d& p : points) ring.addPoint(p.x(), p.y());
-  ring.closeRings();
   auto polygon = std::make_unique<OGRPolygon>();
-  polygon->addRing(&ring);
+  addRing(*polygon, points);
+  for (const std::vector<Eigen::Vector2d>& hole : feature.holes) addRing(*polygon, hole);
   return polygon;
 }
 
@@ -82,16 +80,30 @@ void fillFeature(OGRFeature& feature, const VectorLayer& layer, const VectorFeat
       feature.SetField(field, *real);
     }
   }
-  feature.SetGeometryDirectly(geometryOf(layer.kind, from.points).release());
+  feature.SetGeometryDirectly(geometryOf(layer.kind, from).release());
+}
+
+/// Tables of shapefiles have columns of so many letters, and else ones of 24 with 15 decimals.
+void fitColumn(const VectorField& field, OGRFieldDefn& definition) {
+  constexpr int kNumberWidth = 18;
+  constexpr int kTextWidth = 64;
+  definition.SetWidth(field.kind == FieldKind::kText ? kTextWidth : kNumberWidth);
+  if (field.kind == FieldKind::kReal) definition.SetPrecision(field.decimals);
+  // A wider one is read as a number with decimals by some.
+  if (field.kind == FieldKind::kInteger) {
+    definition.SetType(OFTInteger);
+    definition.SetWidth(9);
+  }
 }
 
 void writeLayer(GDALDataset& file, const VectorLayer& layer, OGRSpatialReference* srs,
-                const OutputPath& path) {
+                const OutputPath& path, bool fit_columns = false) {
   // Without a coordinate system of the earth, GeoPackage's own word for an unknown plane.
   OGRLayer* written = file.CreateLayer(layer.name.c_str(), srs, typeOf(layer.kind), nullptr);
   if (written == nullptr) failWrite(path, "the layer " + layer.name + " cannot be made");
   for (const VectorField& field : layer.fields) {
     OGRFieldDefn definition(field.name.c_str(), fieldTypeOf(field.kind));
+    if (fit_columns) fitColumn(field, definition);
     if (written->CreateField(&definition) != OGRERR_NONE) {
       failWrite(path, "the field " + field.name + " cannot be made");
     }
@@ -101,49 +113,6 @@ void writeLayer(GDALDataset& file, const VectorLayer& layer, OGRSpatialReference
     fillFeature(feature, layer, from);
     if (written->CreateFeature(&feature) != OGRERR_NONE) {
       failWrite(path, "a feature of " + layer.name + " cannot be written");
-    }
-  }
-}
-
-std::optional<OGRSpatialReference> horizontalSrs(const Crs& crs) {
-  if (crs.wkt.empty()) return std::nullopt;
-  std::optional<OGRSpatialReference> srs = srsFrom(crs.wkt);
-  if (!srs) return std::nullopt;
-  OGRSpatialReference horizontal = horizontalOf(*srs);
-  horizontal.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return horizontal;
-}
-
-std::string idOf(const OGRFeature& feature) {
-  constexpr std::array<const char*, 5> kNames = {"id", "plot_id", "plot", "name",
-                                                 "observationUnitName"};
-  for (const char* name : kNames) {
-    const int index = feature.GetDefnRef()->GetFieldIndex(name);
-    if (index >= 0 && feature.IsFieldSetAndNotNull(index)) return feature.GetFieldAsString(index);
-  }
-  return fmt::format("{}", feature.GetFID());
-}
-
-void addRing(const OGRPolygon& polygon, const std::string& id, std::vector<NamedPolygon>& found) {
-  const OGRLinearRing* ring = polygon.getExteriorRing();
-  if (ring == nullptr) return;
-  NamedPolygon result{id, {}};
-  for (int i = 0; i + 1 < ring->getNumPoints(); ++i) {
-    result.corners.emplace_back(ring->getX(i), ring->getY(i));
-  }
-  if (result.corners.size() >= 3) found.push_back(std::move(result));
-}
-
-void addPolygons(const OGRGeometry& geometry, const std::string& id,
-                 std::vector<NamedPolygon>& found) {
-  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-  if (type == wkbPolygon) {
-    addRing(*geometry.toPolygon(), id, found);
-  } else if (type == wkbMultiPolygon) {
-    const OGRMultiPolygon& parts = *geometry.toMultiPolygon();
-    for (int i = 0; i < parts.getNumGeometries(); ++i) {
-      addRing(*parts.getGeometryRef(i),
-              parts.getNumGeometries() == 1 ? id : fmt::format("{}_{}", id, i + 1), found);
     }
   }
 }
@@ -173,61 +142,22 @@ void writeGeoPackage(const OutputPath& path, const std::vector<VectorLayer>& lay
   if (CPLGetLastErrorType() == CE_Failure) failWrite(path, "cannot be written");
 }
 
-std::optional<std::vector<Eigen::Vector2d>> geographic(const Crs& crs,
-                                                       const std::vector<Eigen::Vector2d>& points) {
-  const QuietGdal quiet;
-  const std::optional<OGRSpatialReference> from = horizontalSrs(crs);
-  if (!from) return std::nullopt;
-  OGRSpatialReference to;
-  to.importFromEPSG(4326);
-  to.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  const std::unique_ptr<OGRCoordinateTransformation> transform(
-      OGRCreateCoordinateTransformation(&*from, &to));
-  if (!transform) return std::nullopt;
-  std::vector<Eigen::Vector2d> result = points;
-  for (Eigen::Vector2d& point : result) {
-    if (transform->Transform(1, &point.x(), &point.y()) == FALSE) return std::nullopt;
-  }
-  return result;
-}
-
-std::vector<NamedPolygon> readPolygons(const std::filesystem::path& path, const Crs& crs) {
+void writeShapefile(const OutputPath& dir, const VectorLayer& layer, const Crs& crs) {
   const QuietGdal quiet;
   registerDrivers();
-  const std::string name = path.string();
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    throw InputError(fmt::format("{}: there is no such file", name));
+  const OutputPath path = dir / (layer.name + ".shp");
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("ESRI Shapefile");
+  if (driver == nullptr) {
+    throw OutputError(fmt::format("{}: this GDAL writes no shapefile", path.shown()));
   }
+  std::optional<OGRSpatialReference> srs = horizontalSrs(crs);
   CPLErrorReset();
-  const GDALDatasetUniquePtr file(
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
-  if (!file) {
-    throw InputError(fmt::format(
-        "{}: cannot be read as a map of polygons; give a GeoPackage, GeoJSON or shapefile", name));
-  }
-  const std::optional<OGRSpatialReference> to = horizontalSrs(crs);
-  std::vector<NamedPolygon> found;
-  for (int k = 0; k < file->GetLayerCount() && found.empty(); ++k) {
-    OGRLayer& layer = *file->GetLayer(k);
-    std::unique_ptr<OGRCoordinateTransformation> transform;
-    if (const OGRSpatialReference* from = layer.GetSpatialRef(); from != nullptr && to) {
-      OGRSpatialReference source = *from;
-      source.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-      transform.reset(OGRCreateCoordinateTransformation(&source, &*to));
-    }
-    layer.ResetReading();
-    while (const OGRFeatureUniquePtr feature{layer.GetNextFeature()}) {
-      OGRGeometry* geometry = feature->GetGeometryRef();
-      if (geometry == nullptr) continue;
-      if (transform && geometry->transform(transform.get()) != OGRERR_NONE) {
-        throw InputError(fmt::format("{}: a polygon cannot be brought into {}", name, crs.name));
-      }
-      addPolygons(*geometry, idOf(*feature), found);
-    }
-  }
-  if (found.empty()) throw InputError(fmt::format("{}: has no polygon", name));
-  return found;
+  GDALDatasetUniquePtr file(driver->Create(path.file().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  if (!file) failWrite(path, "cannot be made");
+  writeLayer(*file, layer, srs ? &*srs : nullptr, path, true);
+  CPLErrorReset();
+  file.reset();
+  if (CPLGetLastErrorType() == CE_Failure) failWrite(path, "cannot be written");
 }
 
 }  // namespace agricolmap::io

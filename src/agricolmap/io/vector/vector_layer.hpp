@@ -1,8 +1,8 @@
 // Things on a map with what is known of them: points, lines and polygons, written as GeoPackage,
-// GeoJSON and CSV, and polygons read from whatever OGR reads.
+// shapefile and CSV, and polygons read from whatever OGR reads.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/raster.hpp"
 #include "agricolmap/io/output/output_path.hpp"
 
 namespace agricolmap::io {
@@ -30,7 +31,8 @@ using VectorValue = std::variant<std::monostate, std::int64_t, double, std::stri
 struct VectorFeature {
   /// One of a point; the ring of a polygon is closed by whoever writes it. File coordinates.
   std::vector<Eigen::Vector2d> points;
-  std::vector<VectorValue> values;  ///< as the layer's fields
+  std::vector<VectorValue> values;                       ///< as the layer's fields
+  std::vector<std::vector<Eigen::Vector2d>> holes = {};  ///< of a polygon
 };
 
 struct VectorLayer {
@@ -45,6 +47,10 @@ struct VectorLayer {
 void writeGeoPackage(const OutputPath& path, const std::vector<VectorLayer>& layers,
                      const Crs& crs);
 
+/// One layer as `<name>.shp` with the files that belong to it, in the folder `dir`; `.prj` says the
+/// coordinate system. Names of fields have ten letters at most. Throws as writeGeoPackage.
+void writeShapefile(const OutputPath& dir, const VectorLayer& layer, const Crs& crs);
+
 /// A table: the fields, points with their x and y before them.
 void writeCsv(const OutputPath& path, const VectorLayer& layer);
 
@@ -53,11 +59,45 @@ void writeCsv(const OutputPath& path, const VectorLayer& layer);
 std::optional<std::vector<Eigen::Vector2d>> geographic(const Crs& crs,
                                                        const std::vector<Eigen::Vector2d>& points);
 
+/// The way back, into the plane of `crs`.
+std::optional<std::vector<Eigen::Vector2d>> fromGeographic(
+    const Crs& crs, const std::vector<Eigen::Vector2d>& points);
+
+/// Longitude and latitude (WGS 84) themselves; empty where GDAL is not built in.
+Crs geographicCrs();
+
+/// Cells of one code that meet along their sides, as a polygon with holes: in the coordinates that
+/// `plane_from_cell` gives for (column, row), 0 at the outer corner of the first cell. Code 0 has
+/// none.
+struct CodePolygon {
+  int code = 0;
+  std::vector<Eigen::Vector2d> outline;             ///< not closed
+  std::vector<std::vector<Eigen::Vector2d>> holes;  ///< the same
+};
+/// Throws UsageError where this build has no GDAL.
+std::vector<CodePolygon> codePolygons(const Raster<std::uint8_t>& codes,
+                                      const Eigen::Affine2d& plane_from_cell);
+
 /// A polygon of a file; of one with holes its outer ring.
 struct NamedPolygon {
   std::string id;
   std::vector<Eigen::Vector2d> corners;  ///< not closed
 };
+
+/// A polygon of a file with one of its numbers, NaN where that is null.
+struct ValuedPolygon {
+  std::vector<Eigen::Vector2d> corners;  ///< not closed, as the file has them
+  double value = 0.0;
+};
+struct ValuedPolygons {
+  Crs crs;  ///< empty where the file says none
+  std::vector<ValuedPolygon> polygons;
+};
+
+/// Of the layer and the field of these names. Throws InputError when the file cannot be read or has
+/// not both, with what it has; UsageError where this build has no GDAL.
+ValuedPolygons readValues(const std::filesystem::path& path, const std::string& layer,
+                          const std::string& field);
 
 /// The polygons of the file's first layer that has some, brought to `crs` where both are known.
 /// They are called by their field `id`, `plot_id`, `plot`, `name` or `observationUnitName`, else by

@@ -3,6 +3,7 @@
 #include "agricolmap/report/pictures/change_picture.hpp"
 #include "agricolmap/report/pictures/facts_picture.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
+#include "agricolmap/report/pictures/prescription_picture.hpp"
 #include "agricolmap/report/pictures/shared_map_picture.hpp"
 
 namespace agricolmap::report {
@@ -29,6 +30,10 @@ void writeChangePicture(const io::OutputPath& /*path*/, const ChangeScene& /*sce
 
 void writeFactsPicture(const io::OutputPath& /*path*/, const GridFrame& /*frame*/,
                        const PlacedFacts& /*placed*/) {
+  throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
+}
+
+void writePrescriptionPicture(const io::OutputPath& /*path*/, const PrescriptionScene& /*scene*/) {
   throw UsageError("pictures need Cairo, and this build has none (AGRICOLMAP_WITH_PICTURES)");
 }
 
