@@ -161,8 +161,9 @@ TEST_F(BatchTest, TheSummaryHasAPictureOfAllMaps) {
       batch(manifest(strip("a") + strip("b", "other_field"), "pictures: false\n"), "out").exit_code,
       10);
   EXPECT_EQ(contentOf(inFolder("out/summary.png")).substr(1, 3), "PNG");
-  EXPECT_EQ(entries("out/a"), (std::set<std::string>{"aligned.ply", "batch_item.json",
-                                                     "registration.json", "transform.txt"}));
+  EXPECT_EQ(entries("out/a"),
+            (std::set<std::string>{"aligned.ply", "batch_item.json", "registration.json",
+                                   "report.html", "transform.txt"}));
 }
 
 TEST_F(BatchTest, WhatIsNotOfABatchIsLeftAlone) {
