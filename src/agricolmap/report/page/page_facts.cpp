@@ -64,8 +64,13 @@ Json blocksFacts(const pipeline::Registration& registration) {
 
 Json stripFacts(const pipeline::Registration& registration) {
   if (!registration.placed) return nullptr;
-  const Eigen::Vector2d& half = registration.placed->evidence.strip.half_extent;
-  return {{"length_m", 2.0 * half.x()}, {"width_m", 2.0 * half.y()}};
+  const map::StripFrame& strip = registration.placed->evidence.strip;
+  const Eigen::Vector2d along = registration.placed->pose.linear() * strip.axes.col(0);
+  const Eigen::Vector2d direction =
+      registration.maps.frames.levelled_from_fixed.linear().inverse().topLeftCorner<2, 2>() * along;
+  return {{"length_m", 2.0 * strip.half_extent.x()},
+          {"width_m", 2.0 * strip.half_extent.y()},
+          {"direction", vectorJson(direction.normalized())}};
 }
 
 Json rigidFacts(const CloudFacts& fixed, const Cloud& moving,

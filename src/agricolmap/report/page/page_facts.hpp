@@ -16,7 +16,8 @@ nlohmann::ordered_json optionsFacts(const pipeline::RegistrationOptions& in_forc
 /// across the strip, and how far from there each fits best by itself, along and across.
 nlohmann::ordered_json blocksFacts(const pipeline::Registration& registration);
 
-/// The strip's extent along and across [m], nothing where it was not placed.
+/// The strip's extent along and across [m] and its direction in the fixed file's axes; null where
+/// it was not placed.
 nlohmann::ordered_json stripFacts(const pipeline::Registration& registration);
 
 /// The rotation and shift that come nearest to the transform about the strip's middle, and how far

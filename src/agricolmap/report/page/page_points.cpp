@@ -181,6 +181,7 @@ Json packedPoints(PointSample sample) {
           {"coloured", coloured},
           {"step_m", step},
           {"min_m", {box.min().x(), box.min().y(), box.min().z()}},
+          {"extent_m", {box.sizes().x(), box.sizes().y(), box.sizes().z()}},
           {"gzip_base64", base64(gzipped(bytes))}};
 }
 

@@ -7,7 +7,7 @@ import { fixed } from "./format.js";
 
 const LAYERS = [["colour", "Colour"], ["exg", "Excess Green"], ["height", "Height"]];
 
-function rampLegend(layer, maps) {
+export function rampLegend(layer, maps) {
   if (!RAMPS[layer]) return null;
   const ends = layer === "height" ? maps.height_m.map((v) => `${fixed(v, 2)} m`) : ["soil", "plants"];
   return el("p", { class: "ramp" }, el("span", {}, ends[0]),
