@@ -68,7 +68,7 @@ bool writeAll(png_structp png, png_infop info, const Bytes& picture) {
   const auto channels = static_cast<std::size_t>(picture.channels);
   writeHead(png, info, picture.width, picture.height, kTypes[channels - 1]);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_PAETH);
-  png_set_compression_level(png, 6);
+  png_set_compression_level(png, 3);
   png_set_compression_strategy(png, Z_FILTERED);
   png_write_info(png, info);
   const std::size_t row = channels * static_cast<std::size_t>(picture.width);

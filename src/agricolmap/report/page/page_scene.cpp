@@ -1,3 +1,6 @@
+#include <utility>
+
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/report/page/page_maps.hpp"
 #include "agricolmap/report/page/page_points.hpp"
 #include "agricolmap/report/page/registration_page.hpp"

@@ -4,7 +4,7 @@ import { el, section, svg } from "./dom.js";
 import { fixed, known, length, percent } from "./format.js";
 
 const WIDTH = 720;
-const LEFT = 54, RIGHT = 20, TOP = 14, BOTTOM = 40;
+const LEFT = 54, RIGHT = 66, TOP = 14, BOTTOM = 40;
 
 function niceTicks(low, high, most) {
   const span = high - low || 1;
@@ -69,7 +69,7 @@ export function blocksChart(facts, agreement) {
   const limit = y(100 * agreement);
   parts.unshift(svg("rect", { class: "band", x: LEFT, width: WIDTH - LEFT - RIGHT, y: limit,
     height: y(0) - limit }));
-  parts.push(svg("text", { x: WIDTH - RIGHT - 6, y: limit + 16, "text-anchor": "end" }, "agrees"));
+  parts.push(svg("text", { x: WIDTH - RIGHT + 8, y: limit + 14 }, "agrees"));
   blocks.forEach((b) => {
     const words = `Block at ${fixed(b.along_m, 1)} m, ${b.agrees ? "agrees" : "disagrees"}: placed ` +
       `alone it fits best ${length(off(b) / 100)} away (${fixed(100 * b.offset_along_m, 1)} cm along, ` +
@@ -108,13 +108,14 @@ export function sureSection(report, facts) {
   const agreement = Number(facts.options.find((o) => o.path === "evidence.agreement").value);
   const { agreeing_blocks: agreeing } = report.evidence;
   const total = facts.blocks.length;
-  return section("sure", "What speaks for it", "Evidence",
+  const title = report.status === "accepted" ? "What speaks for it" : "What speaks for and against it";
+  return section("sure", title, "Evidence",
     el("h3", {}, "The strip's score beside wrong places"),
     scoresChart(report),
     el("h3", {}, "Parts of the strip, each placed alone"),
     el("p", {}, total
       ? `The strip is cut into ${total} blocks, and each is looked for by itself. ${agreeing} of them ` +
-        `find the place that the whole gives them, to ${length(agreement)}. Chance does not do that.`
+        `find the place that the whole gives them, to ${length(agreement)}.`
       : "Too little of the strip can be compared to place parts of it alone."),
     total ? blocksChart(facts, agreement) : null,
     el("p", {}, `The strip's map and the drone's overlap by ${percent(report.residuals?.overlap)} ` +

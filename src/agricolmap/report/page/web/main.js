@@ -33,8 +33,6 @@ function verdictSection(report, facts) {
     status === "accepted" ? null : reasonsPart(report),
     tiles.length ? el("dl", { class: "figures" }, ...tiles.map(([label, value, meaning]) =>
       el("div", {}, el("dt", {}, label), el("dd", {}, el("strong", {}, value), el("span", {}, meaning))))) : null,
-    tiles.length && status !== "accepted"
-      ? el("p", { class: "hint" }, "These are of the best answer, if it were right.") : null,
     el("p", {}, sentences.join(" ")),
     status === "accepted" ? reasonsPart(report) : null,
     report.warnings.length ? el("div", {}, el("h2", {}, "Worth knowing"),

@@ -18,6 +18,7 @@ export function rampLegend(layer, maps) {
 
 /** Everything that can lie on the map. */
 function sceneOf(report, facts, maps) {
+  const best = report.status === "accepted" ? "Registered" : "Best answer";
   const base = maps.fixed.map((json) => new Picture(json, json.local_from_image));
   const strip = new Picture(maps.moving.picture, maps.moving.before);
   const bent = maps.moving.straight ? new Picture(maps.moving.straight, maps.moving.after) : strip;
@@ -32,9 +33,10 @@ function sceneOf(report, facts, maps) {
     base, focus, origin: report.fixed.origin_m,
     pictures: [...base, strip, bent],
     whole: base[0].corners(),
+    placesOf: (place) => [...strip.corners(maps.moving.before), ...strip.corners(places[place].affine)],
     label: "The drone's map from above with the robot's strip on it",
     sides(state) {
-      const found = { label: state.place > 0 ? `Place ${state.place + 1}` : "Registered",
+      const found = { label: state.place > 0 ? `Place ${state.place + 1}` : best,
         strips: places.length ? [places[state.place]] : [],
         blocks: state.place === 0 ? facts.blocks : null };
       const guess = { label: "As guessed", strips: [before] };
@@ -69,18 +71,17 @@ export function mapSection(report, facts, maps) {
     report.transform ? choice("compare", "Left of the handle",
       [["guess", "as guessed"], ["drone", "drone alone"]], "guess",
       (compare) => redraw({ compare })) : null,
-    candidates(report, redraw),
+    candidates(report, (change) => {
+      view.fitTo(scene.placesOf(change.place));
+      redraw(change);
+    }),
     check("Outline", true, (outline) => redraw({ outline })),
     facts.blocks.length ? check("Blocks", false, (blocks) => redraw({ blocks })) : null,
     el("span", { class: "zoom", role: "group", "aria-label": "Zoom" },
       button("\u2212", () => view.zoom(0.8), { "aria-label": "Zoom out" }),
       button("+", () => view.zoom(1.25), { "aria-label": "Zoom in" }),
-      button("Strip", () => { view.fit(); view.draw(); }),
-      button("Whole map", () => {
-        const xs = scene.whole.map((p) => p[0]), ys = scene.whole.map((p) => p[1]);
-        view.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)]);
-        view.draw();
-      })));
+      button("Strip", () => view.fitTo(scene.focus)),
+      button("Whole map", () => view.fitTo(scene.whole))));
   redraw({});
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => view.draw());
   const bend = report.deformation
@@ -88,11 +89,11 @@ export function mapSection(report, facts, maps) {
   return section("map", "Before and after", "Map",
     el("p", {}, report.transform
       ? `Drag the handle. Left of it the strip lies where the guess put it, right of it where the ` +
-        `registration does: rows and plants of strip and map should run into each other across ` +
-        `the outline.${bend}`
+        `${report.status === "accepted" ? "registration" : "best answer"} does: rows and plants of ` +
+        `strip and map should run into each other across the outline.${bend}`
       : "There is no registered place; the strip is shown where the guess put it."),
     tools, view.root, legend,
     el("p", { class: "hint", id: "map-keys" },
-      "Drag to pan. Zoom with the buttons, by pinching, or with the wheel after a click (or with " +
+      "Grey was not seen, or the guess rules it out. Drag to pan. Zoom with the buttons, by pinching, or with the wheel after a click (or with " +
       "Ctrl). Keys on the map: arrows, plus, minus, 0; on the handle: arrows, Home, End."));
 }

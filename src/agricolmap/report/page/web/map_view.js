@@ -48,15 +48,16 @@ export class MapView {
     this.canvas.width = Math.round(width * ratio);
     this.canvas.height = Math.round(height * ratio);
     this.ratio = this.canvas.width / width;
-    if (!this.scale) this.fit();
-    this.draw();
+    if (this.scale) this.draw();
+    else this.fitTo(this.scene.focus);
   }
 
-  fit(box = bounds(this.scene.focus)) {
-    const [x0, y0, x1, y1] = box;
+  fitTo(points) {
+    const [x0, y0, x1, y1] = bounds(points);
     const least = Math.min(this.width / (x1 - x0), this.height / (y1 - y0));
     this.scale = Math.min(MOST_ZOOM, 0.9 * least);
     this.centre = [(x0 + x1) / 2, (y0 + y1) / 2];
+    this.draw();
   }
 
   /** Local coordinates to canvas pixels, as for setTransform. */
@@ -248,7 +249,7 @@ export class MapView {
       ArrowLeft: () => this.pan(-step, 0), ArrowRight: () => this.pan(step, 0),
       ArrowUp: () => this.pan(0, step), ArrowDown: () => this.pan(0, -step),
       "+": () => this.zoom(STEP), "=": () => this.zoom(STEP), "-": () => this.zoom(1 / STEP),
-      0: () => { this.fit(); this.draw(); },
+      0: () => this.fitTo(this.scene.focus),
     };
     if (event.ctrlKey || event.metaKey || event.altKey || !actions[event.key]) return;
     event.preventDefault();

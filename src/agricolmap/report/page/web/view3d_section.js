@@ -133,7 +133,8 @@ export function view3dSection(report, facts, points) {
     observer.observe(body);
   }
   const laid = report.transform
-    ? `The strip lies where the registration puts it${report.deformation ? ", its bend taken out" : ""}; ` +
+    ? `The strip lies where the ${report.status === "accepted" ? "registration" : "best answer"} ` +
+      `puts it${report.deformation ? ", its bend taken out" : ""}; ` +
       "plants of both clouds should stand in one another."
     : "There is no registered place; the strip lies where the guess put it.";
   return section("space", "Both clouds in 3-D", "3-D", el("p", {}, laid), body);

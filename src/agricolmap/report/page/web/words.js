@@ -53,22 +53,18 @@ export function sureWords(report) {
   return place;
 }
 
+/** Of an accepted one: errors and bends of a place that may be wrong mean nothing. */
 export function errorWords(report) {
-  const uncertainty = report.uncertainty;
-  if (!uncertainty) {
-    return report.transform ? "Too few parts of the strip can be compared to state an error." : null;
-  }
-  const right = report.status === "accepted" ? "" : "If it were right, ";
-  const plane = `${right ? `${right}the` : "The"} expected error is ` +
-    `${length(uncertainty.expected_rms_m)} in the plane`;
-  const heights = report.heights;
-  if (!heights) return `${plane}.`;
+  if (report.status !== "accepted") return null;
+  const { uncertainty, heights } = report;
+  if (!uncertainty) return "Too few parts of the strip can be compared to state an error.";
+  const plane = `The expected error is ${length(uncertainty.expected_rms_m)} in the plane`;
   if (heights.status === "limited") return `${plane}. Heights are limited: ${heights.words}.`;
   return `${plane} and ${length(heights.deviation_m)} in height.`;
 }
 
 export function bendWords(report) {
-  if (!report.transform) return null;
+  if (report.status !== "accepted") return null;
   const bend = report.deformation;
   if (!bend) {
     const local = report.uncertainty?.local_rms_m;
@@ -88,18 +84,25 @@ export function bendWords(report) {
 /** The few figures to remember: [label, value, what it means]. */
 export function figures(report) {
   if (!report.transform) return [];
-  const { uncertainty, heights, deformation } = report;
-  const limited = heights?.status === "limited";
+  const { uncertainty, heights, deformation, evidence, residuals } = report;
   const parts = report.transform.parts;
-  return [
-    ["Right place", percent(report.place_probability), "row and plant"],
+  const right = ["Right place", percent(report.plane_probability), "within 5 cm in the plane"];
+  const moved = ["Moved", length(Math.hypot(parts.shift_m[0], parts.shift_m[1])),
+    `from the guess, turned ${degrees(parts.yaw_deg)}`];
+  if (report.status !== "accepted") {
+    return [right,
+      ["Parts that agree", `${evidence.agreeing_blocks} of ${evidence.blocks.length}`,
+        "placed alone"],
+      ["On the map", percent(residuals.overlap), "of the strip"],
+      moved];
+  }
+  const limited = heights.status === "limited";
+  return [right,
     ["In the plane", uncertainty ? `± ${length(uncertainty.expected_rms_m)}` : "unknown",
       "expected error, RMS"],
-    ["In height", limited ? "limited" : `± ${length(heights?.deviation_m)}`,
-      limited ? "see below" : "expected error"],
-    ["Moved", length(Math.hypot(parts.shift_m[0], parts.shift_m[1])),
-      `from the guess, turned ${degrees(parts.yaw_deg)}`],
+    ["In height", limited ? "limited" : `± ${length(heights.deviation_m)}`,
+      limited ? "do not rely on it" : "expected error"],
+    moved,
     ["Bent", deformation ? length(deformation.most_m) : "not followed",
-      deformation ? "at most, along its path" : "straight enough"],
-  ];
+      deformation ? "at most, along its path" : "straight enough"]];
 }
