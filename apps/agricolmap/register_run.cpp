@@ -74,8 +74,7 @@ void writeReports(const RegisterRun& run, const LoadedPair& pair,
   } else {
     missing = "the registration was run with --no-pictures";
   }
-  page.facts =
-      report::pageFacts(fixed, pair.moving, result, run.options, run.preset, std::move(missing));
+  page.facts = report::pageFacts(fixed, pair.moving, result, run.options, run.preset, missing);
   page.report = report::registrationJson(fixed, pair.moving, result, monitor, info);
   io::writeText(output.path("registration.json"), page.report.dump(2) + "\n");
   report::writeRegistrationPage(output.path(report::kPageName), page);

@@ -74,10 +74,11 @@ test("the handle swipes by mouse and by key", (chromium, { good }) =>
     await page.until(`document.querySelector(".swipe").hasAttribute("aria-valuenow")`);
     const value = () => page.evaluate(`Number(document.querySelector(".swipe").ariaValueNow)`);
     const at = await page.middle(".swipe");
-    assert.equal(await value(), 50);
+    const begun = await value();
+    assert.ok(begun > 30 && begun < 70, begun);  // on the strip
     const before = await picture(page, ".map canvas");
     await page.drag(at, [at[0] + 200, at[1]]);
-    assert.ok((await value()) > 60);
+    assert.ok((await value()) > begun + 10);
     assert.notEqual(await picture(page, ".map canvas"), before);
     await page.evaluate(`document.querySelector(".swipe").focus()`);
     await page.press("Home");
@@ -192,7 +193,7 @@ test("without pictures it says so, and a name that means harm stays a name", asy
     assert.match(await text(page, "#map"), /--no-pictures/);
     assert.ok((await text(page, ".subject")).includes("<img src=x onerror="));
     assert.equal(await page.evaluate("document.images.length"), 0);
-    assert.ok(statSync(hostile.file).size < 1e6);
+    assert.ok(statSync(hostile.file).size < 2e5);
   }));
 
 for (const [name, options] of Object.entries({

@@ -82,10 +82,25 @@ struct Pixel {
   double exg = 0.0;
   double height = 0.0;
   bool seen = false;
+
+  void add(const Pixel& other) {
+    for (std::size_t k = 0; k < 3; ++k) colour[k] += other.colour[k];
+    exg += other.exg;
+    height += other.height;
+  }
+  /// The mean of `count` that were added.
+  Pixel over(double count) const {
+    Pixel mean = *this;
+    for (double& channel : mean.colour) channel /= count;
+    mean.exg /= count;
+    mean.height /= count;
+    mean.seen = true;
+    return mean;
+  }
 };
 
 Pixel pixelAt(const map::GridMap& map, const Cut& cut, int row, int col) {
-  Pixel pixel;
+  Pixel sum;
   double count = 0.0;
   double cells = 0.0;
   for (int r = cut.row + row * cut.factor; r < cut.row + (row + 1) * cut.factor; ++r) {
@@ -95,19 +110,39 @@ Pixel pixelAt(const map::GridMap& map, const Cut& cut, int row, int col) {
       if (!map.valid(r, c)) continue;
       count += 1.0;
       const Rgb colour = map.colour(r, c);
-      pixel.colour[0] += colour.r;
-      pixel.colour[1] += colour.g;
-      pixel.colour[2] += colour.b;
-      pixel.exg += static_cast<double>(map.exg(r, c));
-      pixel.height += static_cast<double>(map.height(r, c));
+      sum.add({.colour = {static_cast<double>(colour.r), static_cast<double>(colour.g),
+                          static_cast<double>(colour.b)},
+               .exg = static_cast<double>(map.exg(r, c)),
+               .height = static_cast<double>(map.height(r, c))});
     }
   }
-  if (count == 0.0 || count < kLeastSeen * cells) return pixel;
-  for (double& channel : pixel.colour) channel /= count;
-  pixel.exg /= count;
-  pixel.height /= count;
-  pixel.seen = true;
-  return pixel;
+  return count == 0.0 || count < kLeastSeen * cells ? Pixel() : sum.over(count);
+}
+
+/// Single pixels that nothing fell into take the mean of those around: sparse clouds make maps and
+/// not speckle.
+Raster<Pixel> filled(const Raster<Pixel>& pixels) {
+  constexpr double kLeast = 4.0;  // seen neighbours
+  Raster<Pixel> out = pixels;
+  parallelFor(
+      static_cast<std::size_t>(pixels.rows()),
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        for (int col = 0; col < pixels.cols(); ++col) {
+          if (pixels(row, col).seen) continue;
+          Pixel mean;
+          double count = 0.0;
+          for (int k = 0; k < 9; ++k) {
+            const int y = row + k / 3 - 1, x = col + k % 3 - 1;
+            if (!pixels.contains(y, x) || !pixels(y, x).seen) continue;
+            mean.add(pixels(y, x));
+            count += 1.0;
+          }
+          if (count >= kLeast) out(row, col) = mean.over(count);
+        }
+      },
+      16);
+  return out;
 }
 
 struct Scales {
@@ -162,6 +197,7 @@ MapPicture drawn(const map::GridMap& map, const Cut& cut, bool coloured, const S
         }
       },
       16);
+  pixels = filled(pixels);
   const std::vector<Layer> layers = layersOf(coloured, scales);
   std::vector<std::string> encoded(layers.size());
   parallelFor(layers.size(), [&](std::size_t i) {

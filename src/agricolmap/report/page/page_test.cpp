@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "agricolmap/report/page/page_assets.hpp"
 #include "agricolmap/report/page/page_facts.hpp"
 #include "agricolmap/report/page/page_text.hpp"
 #include "agricolmap/report/page/registration_page.hpp"
@@ -101,7 +100,7 @@ TEST(RegistrationPage, WithoutMapsItSaysWhyAndIsSmall) {
   const std::string page = registrationPage(pair.content());
   EXPECT_TRUE(dataOf(page, "scene").is_null());
   EXPECT_EQ(dataOf(page, "facts")["scene_missing"], "a reason");
-  EXPECT_LT(page.size() - pageScript3d().size(), 200'000U);
+  EXPECT_LT(page.size(), 200'000U);
 }
 
 TEST(RegistrationPage, ARejectionWithoutAnyPlaceHasAPage) {

@@ -1,5 +1,7 @@
 #include "agricolmap/report/page/registration_page.hpp"
 
+#include <string_view>
+
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/report/page/page_assets.hpp"
 #include "agricolmap/report/page/page_facts.hpp"
@@ -42,6 +44,7 @@ Json pageFacts(const PointStream& fixed, const Cloud& moving,
 std::string registrationPage(const PageContent& content) {
   const Json& report = content.report;
   const std::string name = report.at("moving").at("path").get<std::string>();
+  const bool in_space = content.scene.contains("points") && !content.scene["points"].is_null();
   return filledTemplate(pageTemplate(),
                         {{"title", htmlText(report.at("status").get<std::string>() + ": " + name)},
                          {"style", std::string(pageStyle())},
@@ -49,7 +52,7 @@ std::string registrationPage(const PageContent& content) {
                          {"report", scriptJson(report)},
                          {"facts", scriptJson(content.facts)},
                          {"scene", scriptJson(content.scene)},
-                         {"script 3d", std::string(pageScript3d())},
+                         {"script 3d", std::string(in_space ? pageScript3d() : std::string_view())},
                          {"script", std::string(pageScript())}});
 }
 

@@ -2,7 +2,7 @@
 
 import { el, section, svg } from "./dom.js";
 import { shortNames } from "./format.js";
-import { bendWords, errorWords, figures, lead, placeWords, sureWords, TITLES } from "./js";
+import { bendWords, errorWords, figures, lead, placeWords, sureWords, title } from "./js";
 import { mapSection } from "./map_section.js";
 import { bendSection, sureSection } from "./charts.js";
 import { numbersSection, transformSection } from "./numbers.js";
@@ -28,7 +28,7 @@ function verdictSection(report, facts) {
   return el("section", { id: "verdict", class: `verdict ${status}`, tabindex: "-1", "aria-labelledby": "verdict-title",
     "data-short": "Verdict" },
     el("p", { class: "subject" }, `${movingName}, laid into ${fixedName}`),
-    el("h1", { id: "verdict-title" }, icon, TITLES[status]),
+    el("h1", { id: "verdict-title" }, icon, title(report)),
     el("p", { class: "lead" }, lead(report)),
     status === "accepted" ? null : reasonsPart(report),
     tiles.length ? el("dl", { class: "figures" }, ...tiles.map(([label, value, meaning]) =>

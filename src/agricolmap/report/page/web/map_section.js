@@ -16,6 +16,9 @@ export function rampLegend(layer, maps) {
     el("span", {}, ends[1]));
 }
 
+const middleOf = (corners) => [0, 1].map((k) =>
+  corners.reduce((sum, corner) => sum + corner[k], 0) / corners.length);
+
 /** Everything that can lie on the map. */
 function sceneOf(report, facts, maps) {
   const best = report.status === "accepted" ? "Registered" : "Best answer";
@@ -30,17 +33,18 @@ function sceneOf(report, facts, maps) {
   const places = after ? [after, ...others] : [];
   const focus = [...strip.corners(maps.moving.before), ...(after ? bent.corners(after.affine) : [])];
   return {
-    base, focus, origin: report.fixed.origin_m,
+    base, focus, middle: middleOf(after ? bent.corners(after.affine) : strip.corners()), origin: report.fixed.origin_m,
     pictures: [...base, strip, bent],
     whole: base[0].corners(),
     placesOf: (place) => [...strip.corners(maps.moving.before), ...strip.corners(places[place].affine)],
     label: "The drone's map from above with the robot's strip on it",
     sides(state) {
-      const found = { label: state.place > 0 ? `Place ${state.place + 1}` : best,
+      const found = { other: before.outline, label: state.place > 0 ? `Place ${state.place + 1}` : best,
         strips: places.length ? [places[state.place]] : [],
         blocks: state.place === 0 ? facts.blocks : null };
-      const guess = { label: "As guessed", strips: [before] };
-      const bare = { label: "Drone alone", strips: [] };
+      const guess = { label: "As guessed", strips: [before],
+        other: places.length ? places[state.place].outline : [] };
+      const bare = { label: "Drone alone", strips: [], other: [] };
       if (!places.length) return [bare, guess];
       return state.compare === "guess" ? [guess, found] : [bare, found];
     },
@@ -94,6 +98,7 @@ export function mapSection(report, facts, maps) {
       : "There is no registered place; the strip is shown where the guess put it."),
     tools, view.root, legend,
     el("p", { class: "hint", id: "map-keys" },
-      "Grey was not seen, or the guess rules it out. Drag to pan. Zoom with the buttons, by pinching, or with the wheel after a click (or with " +
+      "Dashed: the strip's place on the other side. Grey was not seen, or the guess rules it out. " +
+      "Drag to pan. Zoom with the buttons, by pinching, or with the wheel after a click (or with " +
       "Ctrl). Keys on the map: arrows, plus, minus, 0; on the handle: arrows, Home, End."));
 }

@@ -49,9 +49,15 @@ export class MapView {
     this.canvas.height = Math.round(height * ratio);
     this.ratio = this.canvas.width / width;
     if (this.scale) this.draw();
-    else this.fitTo(this.scene.focus);
+    else this.begin();
   }
 
+  /** All of the strip's places, and the handle on the one that was found. */
+  begin() {
+    this.fitTo(this.scene.focus);
+    const right = (this.scene.middle[0] - this.centre[0]) * this.scale;
+    this.swipeTo(Math.min(0.9, Math.max(0.1, 0.5 + right / this.width)));
+  }
   fitTo(points) {
     const [x0, y0, x1, y1] = bounds(points);
     const least = Math.min(this.width / (x1 - x0), this.height / (y1 - y0));
@@ -103,22 +109,26 @@ export class MapView {
     context.clip();
     for (const strip of side.strips) {
       strip.picture.draw(context, this.state.layer, view, strip.affine);
-      if (this.state.outline) this.outline(context, strip, view);
+      if (this.state.outline) this.outline(context, strip.outline, view, []);
     }
+    if (this.state.outline) this.outline(context, side.other, view, [6, 6]);
     if (this.state.blocks && side.blocks) this.blocks(context, side.blocks, view);
     context.restore();
   }
 
-  outline(context, strip, view) {
+  /** Dashed: where the strip lies on the other side of the handle. */
+  outline(context, corners, view, dashes) {
     context.setTransform(1, 0, 0, 1, 0, 0);
+    context.setLineDash(dashes.map((dash) => dash * this.ratio));
     context.beginPath();
-    for (const corner of strip.outline) context.lineTo(...apply(view, corner));
+    for (const corner of corners) context.lineTo(...apply(view, corner));
     context.closePath();
     for (const [width, colour] of [[3.5, "#000000b0"], [1.5, "#ffffff"]]) {
       context.lineWidth = width * this.ratio;
       context.strokeStyle = colour;
       context.stroke();
     }
+    context.setLineDash([]);
   }
 
   /** Blocks as discs that agree and crosses that do not, with a line to where each fits best. */

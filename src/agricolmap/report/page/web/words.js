@@ -5,7 +5,12 @@ import { degrees, fixed, known, length, percent } from "./format.js";
 const direction = (value, positive, negative) =>
   `${length(Math.abs(value))} ${value < 0 ? negative : positive}`;
 
-export const TITLES = { accepted: "Accepted", rejected: "Rejected", ambiguous: "Ambiguous" };
+export function title(report) {
+  if (report.status === "accepted" && report.heights.status === "limited") {
+    return "Accepted in the plane";
+  }
+  return { accepted: "Accepted", rejected: "Rejected", ambiguous: "Ambiguous" }[report.status];
+}
 
 export function lead(report) {
   if (report.status === "accepted") {
@@ -101,7 +106,8 @@ export function figures(report) {
     ["In the plane", uncertainty ? `± ${length(uncertainty.expected_rms_m)}` : "unknown",
       "expected error, RMS"],
     ["In height", limited ? "limited" : `± ${length(heights.deviation_m)}`,
-      limited ? "do not rely on it" : "expected error"],
+      !limited ? "expected error" :
+        known(heights.deviation_m) ? `good to ${length(heights.deviation_m)}` : "not measured"],
     moved,
     ["Bent", deformation ? length(deformation.most_m) : "not followed",
       deformation ? "at most, along its path" : "straight enough"]];
