@@ -174,6 +174,8 @@ TEST_F(BatchTest, TheSummaryHasAPictureOfAllMaps) {
       batch(manifest(strip("a") + strip("b", "other_field"), "pictures: false\n"), "out").exit_code,
       10);
   EXPECT_EQ(contentOf(inFolder("out/summary.png")).substr(1, 3), "PNG");
+  EXPECT_NE(contentOf(inFolder("out/summary.html")).find("<title>1 accepted, 1 rejected"),
+            std::string::npos);
   EXPECT_EQ(entries("out/a"),
             (std::set<std::string>{"aligned.ply", "batch_item.json", "registration.json",
                                    "report.html", "transform.txt"}));

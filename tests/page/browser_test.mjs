@@ -2,7 +2,7 @@
 // headless Chromium. Leaves screenshots in FOLDER.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { copyFileSync, mkdirSync, readFileSync, statSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { Chromium } from "./chromium.mjs";
 import { contrastsOf, namelessOf } from "./access.mjs";
 
@@ -23,7 +23,7 @@ const tests = [];
 const test = (name, run) => tests.push({ name, run });
 const quiet = (page) => {
   assert.deepEqual(page.problems, []);
-  const foreign = page.requests.filter((url) => !url.startsWith("data:") && !url.endsWith("/report.html"));
+  const foreign = page.requests.filter((url) => !url.startsWith("data:") && !url.endsWith(".html"));
   assert.deepEqual(foreign, []);
 };
 const text = (page, selector) =>
@@ -214,6 +214,24 @@ for (const [name, options] of Object.entries({
     }));
 }
 
+test("a batch leads to the report of each strip", (chromium, { batch }) =>
+  on(chromium, batch, {}, async (page) => {
+    assert.equal(await text(page, "h1"), "1 of 2 accepted");
+    const shown = () => page.evaluate(`document.querySelectorAll("#strips tbody tr").length`);
+    assert.equal(await shown(), 2);
+    await choose(page, "status", "rejected");
+    assert.equal(await shown(), 1);
+    await choose(page, "status", "all");
+    await choose(page, "sort", "doubtful");
+    assert.match(await text(page, "#strips tbody tr"), /^b\s+Rejected/);
+    assert.equal(await page.evaluate(`document.querySelectorAll("#plan a").length`), 2);
+    assert.deepEqual(await page.evaluate(`(${contrastsOf})(4.5)`), []);
+    assert.deepEqual(await namelessOf(page), []);
+    await page.screenshot(`${folder}/batch.png`);
+    await page.evaluate(`document.querySelector("#strips a[href='a/report.html']").click()`);
+    await page.until(`document.querySelector("h1")?.innerText === "Accepted"`);
+  }));
+
 test("without scripts the verdict and its reasons are read", async (chromium, { bad }) => {
   const page = await chromium.open(bad.url, { scripts: false });
   const { root } = await page.send("DOM.getDocument", { depth: -1 });
@@ -223,6 +241,17 @@ test("without scripts the verdict and its reasons are read", async (chromium, { 
   await page.close();
 });
 
+/** A batch of a strip that is found and one that is not; returns the address of its page. */
+function batch() {
+  const entry = (id, kind) => `  - {id: ${id}, map: ${kind}, file: ${pairs}/${kind}/ugv/point_cloud.ply}\n`;
+  const map = (kind) => `  - {id: ${kind}, file: ${pairs}/${kind}/uav/point_cloud.ply}\n`;
+  writeFileSync(`${folder}/batch.yaml`, `maps:\n${map("same_field")}${map("other_field")}strips:\n` +
+    entry("a", "same_field") + entry("b", "other_field") + "pictures: false\n");
+  const done = spawnSync(agricolmap, ["batch", `${folder}/batch.yaml`, "-o", `${folder}/batch`, "--overwrite", "--quiet"]);
+  assert.equal(done.status, 10, String(done.stderr));
+  return `file://${encodeURI(folder)}/batch/summary.html`;
+}
+
 const evil = `${folder}/<img src=x onerror=alert(1)>.ply`;
 copyFileSync(`${pairs}/same_field/ugv/point_cloud.ply`, evil);
 const pages = {
@@ -230,6 +259,7 @@ const pages = {
   bad: register("bad", "other_field", { status: 10 }),
   hostile: register("hostile", "same_field", { moving: evil,
     more: ["--prior", `${pairs}/same_field/prior.txt`, "--no-pictures"] }),
+  batch: batch(),
 };
 const chromium = new Chromium(program);
 let failures = 0;

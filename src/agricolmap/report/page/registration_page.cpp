@@ -1,7 +1,5 @@
 #include "agricolmap/report/page/registration_page.hpp"
 
-#include <string_view>
-
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/report/page/page_assets.hpp"
 #include "agricolmap/report/page/page_facts.hpp"
@@ -44,16 +42,7 @@ Json pageFacts(const PointStream& fixed, const Cloud& moving,
 std::string registrationPage(const PageContent& content) {
   const Json& report = content.report;
   const std::string name = report.at("moving").at("path").get<std::string>();
-  const bool in_space = content.scene.contains("points") && !content.scene["points"].is_null();
-  return filledTemplate(pageTemplate(),
-                        {{"title", htmlText(report.at("status").get<std::string>() + ": " + name)},
-                         {"style", std::string(pageStyle())},
-                         {"plain words", plainWords(content)},
-                         {"report", scriptJson(report)},
-                         {"facts", scriptJson(content.facts)},
-                         {"scene", scriptJson(content.scene)},
-                         {"script 3d", std::string(in_space ? pageScript3d() : std::string_view())},
-                         {"script", std::string(pageScript())}});
+  return pageOf(content, report.at("status").get<std::string>() + ": " + name, plainWords(content));
 }
 
 void writeRegistrationPage(const io::OutputPath& path, const PageContent& content) {

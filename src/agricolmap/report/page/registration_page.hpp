@@ -8,6 +8,7 @@
 #include "agricolmap/core/monitor.hpp"
 #include "agricolmap/io/output/output_path.hpp"
 #include "agricolmap/report/json/registration_json.hpp"
+#include "agricolmap/report/page/page.hpp"
 
 namespace agricolmap::report {
 
@@ -18,13 +19,6 @@ inline constexpr const char* kPageName = "report.html";
 nlohmann::ordered_json pageScene(const PointStream& fixed, const Cloud& moving,
                                  const pipeline::Registration& registration,
                                  const Eigen::Affine3d& guess);
-
-/// What the page is made from.
-struct PageContent {
-  nlohmann::ordered_json report;  ///< registration.json
-  nlohmann::ordered_json facts;   ///< what the page says beside it
-  nlohmann::ordered_json scene;   ///< maps and points; null: without
-};
 
 /// The facts of a page: words, blocks, options, the nearest rigid transform. `scene_missing`: why
 /// there are no maps and points, in words; empty where there are.
