@@ -232,6 +232,22 @@ test("a batch leads to the report of each strip", (chromium, { batch }) =>
     await page.until(`document.querySelector("h1")?.innerText === "Accepted"`);
   }));
 
+test("a shared map shows its layers side by side", (chromium, { map }) =>
+  on(chromium, map, {}, async (page) => {
+    assert.equal(await text(page, "h1"), "One map of a drone and 3 strips");
+    let last = await picture(page, ".map canvas");
+    for (const layer of ["source", "height_error", "exg", "colour"]) {
+      await choose(page, "right", layer);
+      await new Promise((resolve) => setTimeout(resolve, 300));
+      const now = await picture(page, ".map canvas");
+      assert.notEqual(now, last, layer);
+      last = now;
+      if (layer === "source") await page.screenshot(`${folder}/map.png`);
+    }
+    assert.deepEqual(await page.evaluate(`(${contrastsOf})(4.5)`), []);
+    assert.deepEqual(await namelessOf(page), []);
+  }));
+
 test("without scripts the verdict and its reasons are read", async (chromium, { bad }) => {
   const page = await chromium.open(bad.url, { scripts: false });
   const { root } = await page.send("DOM.getDocument", { depth: -1 });
@@ -252,6 +268,15 @@ function batch() {
   return `file://${encodeURI(folder)}/batch/summary.html`;
 }
 
+/** The shared map of strips that were registered before; returns the address of its page. */
+function fused() {
+  const done = spawnSync(agricolmap, ["fuse", `${pairs}/strips/uav/point_cloud.ply`,
+    ...[1, 2, 3].map((number) => `${pairs}/runs/strip_${number}`), "-o", `${folder}/map`, "--anew",
+    "--overwrite", "--quiet", "--cloud-format", "none"]);
+  assert.equal(done.status, 0, String(done.stderr));
+  return `file://${encodeURI(folder)}/map/map.html`;
+}
+
 const evil = `${folder}/<img src=x onerror=alert(1)>.ply`;
 copyFileSync(`${pairs}/same_field/ugv/point_cloud.ply`, evil);
 const pages = {
@@ -260,6 +285,7 @@ const pages = {
   hostile: register("hostile", "same_field", { moving: evil,
     more: ["--prior", `${pairs}/same_field/prior.txt`, "--no-pictures"] }),
   batch: batch(),
+  map: fused(),
 };
 const chromium = new Chromium(program);
 let failures = 0;

@@ -1,5 +1,6 @@
 // Stands for the maps and points of a page where libpng and its zlib are not built in.
 #include "agricolmap/report/page/registration_page.hpp"
+#include "agricolmap/report/page/shared_map_page.hpp"
 
 namespace agricolmap::report {
 
@@ -8,5 +9,7 @@ nlohmann::ordered_json pageScene(const PointStream& /*fixed*/, const Cloud& /*mo
                                  const Eigen::Affine3d& /*guess*/) {
   return nullptr;
 }
+
+nlohmann::ordered_json sharedMapScene(const fuse::SharedMap& /*map*/) { return nullptr; }
 
 }  // namespace agricolmap::report

@@ -4,7 +4,19 @@
 const LOW_TO_HIGH = ["440154", "414487", "2a788e", "22a884", "7ad151", "fde725"];
 // Soil to plant: darker is greener, so that it holds without its hue, too.
 const SOIL_TO_PLANT = ["f3ead7", "d9d3a5", "a9bd7f", "6b9a5b", "2f7243", "0a4a2e"];
-export const RAMPS = { height: LOW_TO_HIGH, exg: SOIL_TO_PLANT };
+// Brighter is worse.
+const GOOD_TO_BAD = ["0d1b3e", "28456c", "4f7396", "8ba3ad", "d0c9a6", "fff3b0"];
+export const RAMPS = {
+  height: LOW_TO_HIGH, plant_height: LOW_TO_HIGH, exg: SOIL_TO_PLANT,
+  plane_error: GOOD_TO_BAD, height_error: GOOD_TO_BAD,
+};
+// For the colour-blind (Okabe and Ito); the drone's is grey.
+const SOURCES = ["e69f00", "56b4e9", "009e73", "f0e442", "0072b2", "d55e00", "cc79a7"];
+
+/** The colour of the source with this code: 1 is the drone's, strips follow. */
+export function sourceColour(code) {
+  return code <= 1 ? "9a9a9a" : SOURCES[(code - 2) % SOURCES.length];
+}
 
 const parts = (hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
@@ -59,7 +71,10 @@ export class Picture {
   async prepare(layer) {
     if (this.ready[layer] || !this.has(layer)) return;
     const image = await load(this.json.layers[layer]);
-    this.ready[layer] = RAMPS[layer] ? coloured(image, rampTable(RAMPS[layer])) : image;
+    const table = layer === "source"
+      ? Array.from({ length: 256 }, (_, code) => parts(sourceColour(code)))
+      : RAMPS[layer] && rampTable(RAMPS[layer]);
+    this.ready[layer] = table ? coloured(image, table) : image;
   }
   /** Draws it; `view`: local coordinates to pixels, as for setTransform. */
   draw(context, layer, view, affine = this.affine) {

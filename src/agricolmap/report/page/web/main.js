@@ -3,6 +3,7 @@
 import { el } from "./dom.js";
 import { batchParts } from "./batch.js";
 import { registrationParts } from "./registration.js";
+import { sharedMapParts } from "./shared_map.js";
 
 const read = (id) => JSON.parse(document.getElementById(id).textContent);
 
@@ -10,6 +11,7 @@ const read = (id) => JSON.parse(document.getElementById(id).textContent);
 const KINDS = {
   "agricolmap-registration": ["registration report", registrationParts],
   "agricolmap-batch-summary": ["batch report", batchParts],
+  "agricolmap-map": ["map of a field", sharedMapParts],
 };
 
 function build() {

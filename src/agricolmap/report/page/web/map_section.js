@@ -7,9 +7,8 @@ import { fixed } from "./format.js";
 
 const LAYERS = [["colour", "Colour"], ["exg", "Excess Green"], ["height", "Height"]];
 
-export function rampLegend(layer, maps) {
-  if (!RAMPS[layer]) return null;
-  const ends = layer === "height" ? maps.height_m.map((v) => `${fixed(v, 2)} m`) : ["soil", "plants"];
+export function rampLegend(layer, [low, high]) {
+  const ends = layer === "exg" ? ["soil", "plants"] : [`${fixed(low, 2)} m`, `${fixed(high, 2)} m`];
   return el("p", { class: "ramp" }, el("span", {}, ends[0]),
     el("span", { class: "bar", "aria-hidden": "true",
       style: `background:linear-gradient(to right,${RAMPS[layer].map((c) => `#${c}`)})` }),
@@ -57,6 +56,20 @@ function candidates(report, redraw) {
   return choice("place", "Candidate", all, "0", (value) => redraw({ place: Number(value) }));
 }
 
+export function mapHint(words) {
+  return el("p", { class: "hint", id: "map-keys" },
+    `${words} Drag to pan. Zoom with the buttons, by pinching, or with the wheel after a click (or ` +
+    "with Ctrl). Keys on the map: arrows, plus, minus, 0; on the handle: arrows, Home, End.");
+}
+
+/** Buttons that show what there is to see: [label, its corners]. */
+export function zoomButtons(view, sights) {
+  return el("span", { class: "zoom", role: "group", "aria-label": "Zoom" },
+    button("\u2212", () => view.zoom(0.8), { "aria-label": "Zoom out" }),
+    button("+", () => view.zoom(1.25), { "aria-label": "Zoom in" }),
+    ...sights.map(([label, corners]) => button(label, () => view.fitTo(corners))));
+}
+
 export function mapSection(report, facts, maps) {
   const scene = sceneOf(report, facts, maps);
   const layers = LAYERS.filter(([name]) => scene.pictures.every((picture) => picture.has(name)));
@@ -66,7 +79,7 @@ export function mapSection(report, facts, maps) {
   const redraw = async (change) => {
     Object.assign(state, change);
     await Promise.all(scene.pictures.map((picture) => picture.prepare(state.layer)));
-    legend.replaceChildren(...[rampLegend(state.layer, maps)].filter(Boolean));
+    legend.replaceChildren(...(RAMPS[state.layer] ? [rampLegend(state.layer, maps.height_m)] : []));
     view.draw();
   };
   const tools = el("div", { class: "tools" },
@@ -81,11 +94,7 @@ export function mapSection(report, facts, maps) {
     }),
     check("Outline", true, (outline) => redraw({ outline })),
     facts.blocks.length ? check("Blocks", false, (blocks) => redraw({ blocks })) : null,
-    el("span", { class: "zoom", role: "group", "aria-label": "Zoom" },
-      button("\u2212", () => view.zoom(0.8), { "aria-label": "Zoom out" }),
-      button("+", () => view.zoom(1.25), { "aria-label": "Zoom in" }),
-      button("Strip", () => view.fitTo(scene.focus)),
-      button("Whole map", () => view.fitTo(scene.whole))));
+    zoomButtons(view, [["Strip", scene.focus], ["Whole map", scene.whole]]));
   redraw({});
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => view.draw());
   const bend = report.deformation
@@ -97,8 +106,5 @@ export function mapSection(report, facts, maps) {
         `strip and map should run into each other across the outline.${bend}`
       : "There is no registered place; the strip is shown where the guess put it."),
     tools, view.root, legend,
-    el("p", { class: "hint", id: "map-keys" },
-      "Dashed: the strip's place on the other side. Grey was not seen, or the guess rules it out. " +
-      "Drag to pan. Zoom with the buttons, by pinching, or with the wheel after a click (or with " +
-      "Ctrl). Keys on the map: arrows, plus, minus, 0; on the handle: arrows, Home, End."));
+    mapHint("Dashed: the strip's place on the other side. Grey was not seen, or the guess rules it out."));
 }

@@ -84,9 +84,7 @@ export class MapView {
     context.fillStyle = styleColour("--map-empty");
     context.fillRect(0, 0, this.canvas.width, this.canvas.height);
     const view = this.view();
-    const { layer } = this.state;
     context.imageSmoothingEnabled = this.scale < 120;
-    for (const picture of this.scene.base) picture.draw(context, layer, view);
     const at = this.swipe * this.canvas.width;
     const [left, right] = this.scene.sides(this.state);
     this.side(context, left, 0, at, view);
@@ -107,8 +105,10 @@ export class MapView {
     context.beginPath();
     context.rect(from, 0, to - from, this.canvas.height);
     context.clip();
+    const layer = side.layer ?? this.state.layer;
+    for (const picture of this.scene.base) picture.draw(context, layer, view);
     for (const strip of side.strips) {
-      strip.picture.draw(context, this.state.layer, view, strip.affine);
+      strip.picture.draw(context, layer, view, strip.affine);
       if (this.state.outline) this.outline(context, strip.outline, view, []);
     }
     if (this.state.outline) this.outline(context, side.other, view, [6, 6]);

@@ -64,7 +64,7 @@ function controls(view, report, points) {
   const colour = (mode) => {
     view.colour(mode);
     const heights = view.heights.map((h) => h - view.heights[0]);
-    legend.replaceChildren(...(mode === "height" ? [rampLegend("height", { height_m: heights })]
+    legend.replaceChildren(...(mode === "height" ? [rampLegend("height", heights)]
       : mode === "cloud" ? [el("p", { class: "key clouds" }, el("span", { class: "drone" }, "drone"),
         el("span", { class: "strip" }, "strip"))] : []));
   };
