@@ -203,7 +203,8 @@ CommandSlot addBatchCommand(CLI::App& app, const Globals& globals) {
       ->add_option("--memory", arguments->memory,
                    "GiB that all strips at once may take [4/5 of what is available]")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG pictures");
+  command->add_flag("--no-pictures", arguments->no_pictures,
+                    "Write no PNG pictures, and reports of words and numbers only");
   command->add_flag("--list", arguments->list, "Print the ids of the strips and stop");
   command->footer(
       "Exit codes: 0 all accepted; 12 some strips failed; else 10 some rejected; else 11 some "

@@ -147,7 +147,7 @@ Raster<Pixel> filled(const Raster<Pixel>& pixels) {
 
 struct Scales {
   Scale exg;
-  Scale height;
+  std::optional<Scale> height;  ///< nothing where heights say nothing
 };
 
 /// A layer's bytes, top row first.
@@ -169,7 +169,8 @@ std::vector<Layer> layersOf(bool coloured, const Scales& scales) {
                         out[0] = exg.byteOf(pixel.exg);
                       }});
   }
-  layers.push_back({"height", 2, [height = scales.height](const Pixel& pixel, std::uint8_t* out) {
+  if (!scales.height) return layers;
+  layers.push_back({"height", 2, [height = *scales.height](const Pixel& pixel, std::uint8_t* out) {
                       out[0] = height.byteOf(pixel.height);
                     }});
   return layers;
@@ -312,8 +313,12 @@ Json pageMaps(const pipeline::Registration& registration, const CloudFacts& fixe
               const Cloud& moving, const PageColours& coloured) {
   const pipeline::PairMaps& maps = registration.maps;
   if (maps.fixed.weight.empty() || maps.moving.weight.empty()) return nullptr;
-  const Scales fixed_scales = {scaleOf({&maps.fixed}, &map::GridMap::exg),
-                               scaleOf({&maps.fixed, &maps.moving}, &map::GridMap::height)};
+  Scales fixed_scales = {scaleOf({&maps.fixed}, &map::GridMap::exg), {}};
+  // A cloud laid flat has none worth looking at; without colours there is nothing else.
+  if (!coloured.fixed || !coloured.moving ||
+      (map::hasRelief(maps.fixed) && map::hasRelief(maps.moving))) {
+    fixed_scales.height = scaleOf({&maps.fixed, &maps.moving}, &map::GridMap::height);
+  }
   // Cameras differ in what they call green, so that each map has its own scale.
   const Scales moving_scales = {scaleOf({&maps.moving}, &map::GridMap::exg), fixed_scales.height};
   const Eigen::Affine2d local_from_levelled = planeOf(maps.frames.levelled_from_fixed.inverse());
@@ -330,9 +335,8 @@ Json pageMaps(const pipeline::Registration& registration, const CloudFacts& fixe
     json["fixed"].push_back(std::move(picture.json));
   }
   json["moving"] = stripJson(registration, fixed, moving, coloured.moving, moving_scales);
-  json["height_m"] = {fixed_scales.height.low, fixed_scales.height.high};
-  json["exg_fixed"] = {fixed_scales.exg.low, fixed_scales.exg.high};
-  json["exg_moving"] = {moving_scales.exg.low, moving_scales.exg.high};
+  const Scale height = fixed_scales.height.value_or(Scale());
+  json["height_m"] = {height.low, height.high};
   return json;
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "agricolmap/report/page/page_maps.hpp"
@@ -88,6 +89,17 @@ TEST(PageMaps, CloudsWithoutColoursHaveHeightsAlone) {
   EXPECT_TRUE(maps["fixed"][0]["layers"].contains("colour"));
   EXPECT_FALSE(maps["moving"]["picture"]["layers"].contains("colour"));
   EXPECT_TRUE(maps["moving"]["picture"]["layers"].contains("height"));
+}
+
+TEST(PageMaps, FlatCloudsHaveNoLayerOfHeights) {
+  pipeline::Registration registration = testing::testRegistration();
+  std::fill(registration.maps.moving.height.begin(), registration.maps.moving.height.end(), 0.0F);
+  const Json flat = pageMaps(registration, {}, {}, {true, true});
+  EXPECT_FALSE(flat["moving"]["picture"]["layers"].contains("height"));
+  EXPECT_TRUE(flat["moving"]["picture"]["layers"].contains("colour"));
+  // Of clouds without colours it is all there is.
+  const Json bare = pageMaps(registration, {}, {}, {false, false});
+  EXPECT_TRUE(bare["moving"]["picture"]["layers"].contains("height"));
 }
 
 TEST(PageMaps, WithoutAPlaceTheStripLiesAsGuessed) {

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMostPixels = 700'000.0;  // of one picture
-constexpr std::size_t kSamples = 100'000;    // enough for percentiles
+constexpr std::size_t kSamples = 100'000;  // enough for percentiles
 
 /// A layer of numbers, and what its bytes 0…255 stand for.
 struct Values {

@@ -57,7 +57,7 @@ export function registrationParts(report, facts, scene) {
   parts.push(scene?.maps ? mapSection(report, facts, scene.maps) : missingSection(facts));
   if (report.transform) parts.push(sureSection(report, facts));
   if (report.deformation) parts.push(bendSection(report));
-  if (scene?.points) parts.push(view3dSection(report, facts, scene.points));
+  if (scene && (scene.points || !facts.with_3d)) parts.push(view3dSection(report, facts, scene.points));
   if (report.transform) parts.push(transformSection(report, facts));
   parts.push(numbersSection(report, facts));
   return parts;

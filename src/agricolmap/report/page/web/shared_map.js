@@ -29,8 +29,8 @@ function introduction(map) {
     el("dl", { class: "figures" }, ...[
       ["Extent", `${fixed(cols * cell, 0)} × ${fixed(rows * cell, 0)} m`, `in cells of ${length(cell)}`],
       ["Seen by robots", area(owned), "the rest is the drone's"],
-      ["Points", count(map.sources.reduce((sum, source) => sum + source.points_in_cloud, 0)),
-        map.cloud ?? "no cloud was written"],
+      ...(map.cloud ? [["Points", count(map.sources.reduce((sum, source) =>
+        sum + source.points_in_cloud, 0)), map.cloud]] : []),
     ].map(([label, value, meaning]) => el("div", {}, el("dt", {}, label),
       el("dd", {}, el("strong", {}, value), el("span", {}, meaning))))),
     map.flat ? el("p", {}, "These clouds have no heights, so the map has none.") : null,
