@@ -1,6 +1,7 @@
 // Numbers as people read them.
 
 const MINUS = "\u2212";
+const GAP = "\u00a0";  // between a number and its unit no line ends
 
 export const known = (value) => typeof value === "number" && Number.isFinite(value);
 
@@ -13,8 +14,8 @@ export function fixed(value, digits) {
 /** A length in centimetres below a metre, else in metres. */
 export function length(metres) {
   if (!known(metres)) return "unknown";
-  if (Math.abs(metres) < 0.995) return `${fixed(100 * metres, 1)} cm`;
-  return `${fixed(metres, 2)} m`;
+  if (Math.abs(metres) < 0.995) return `${fixed(100 * metres, 1)}${GAP}cm`;
+  return `${fixed(metres, 2)}${GAP}m`;
 }
 
 export const degrees = (value) => `${fixed(value, 2)}°`;
@@ -22,9 +23,9 @@ export const degrees = (value) => `${fixed(value, 2)}°`;
 /** As the command line says it: nothing is certain. */
 export function percent(share) {
   if (!known(share)) return "unknown";
-  if (share > 0.9995) return "> 99.9 %";
-  if (share < 0.0005) return "< 0.1 %";
-  return `${(100 * share).toFixed(1)} %`;
+  if (share > 0.9995) return `>${GAP}99.9${GAP}%`;
+  if (share < 0.0005) return `<${GAP}0.1${GAP}%`;
+  return `${(100 * share).toFixed(1)}${GAP}%`;
 }
 
 /** 1234567 as 1 234 567, with blanks that do not break. */

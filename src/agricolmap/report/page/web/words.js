@@ -32,7 +32,7 @@ function stretch(parts) {
   const percents = [parts.scale_x, parts.scale_y].map((scale) => 100 * (scale - 1));
   if (percents.every((value) => Math.abs(value) < 0.05)) return "its size as it was";
   const [x, y] = percents.map((value) =>
-    `${fixed(Math.abs(value), 1)} % ${value < 0 ? "shorter" : "longer"}`);
+    `${fixed(Math.abs(value), 1)}\u00a0% ${value < 0 ? "shorter" : "longer"}`);
   return x === y ? `${x}` : `${x} along its file's x axis and ${y} along y`;
 }
 
@@ -103,12 +103,12 @@ export function figures(report) {
   }
   const limited = heights.status === "limited";
   return [right,
-    ["In the plane", uncertainty ? `± ${length(uncertainty.expected_rms_m)}` : "unknown",
+    ["In the plane", uncertainty ? `±\u00a0${length(uncertainty.expected_rms_m)}` : "unknown",
       "expected error, RMS"],
-    ["In height", limited ? "limited" : `± ${length(heights.deviation_m)}`,
+    ["In height", limited ? "limited" : `±\u00a0${length(heights.deviation_m)}`,
       !limited ? "expected error" :
         known(heights.deviation_m) ? `good to ${length(heights.deviation_m)}` : "not measured"],
     moved,
-    ["Bent", deformation ? length(deformation.most_m) : "not followed",
-      deformation ? "at most, along its path" : "straight enough"]];
+    ["Bent", deformation ? length(deformation.most_m) : "hardly",
+      deformation ? "at most, along its path" : "nothing had to be followed"]];
 }
