@@ -31,8 +31,8 @@ TEST_F(FormatsTest, LasIsRegisteredAsPly) {
   const std::string ugv = converted(files.ugv(), "ugv.las", {"--crs", "EPSG:32632"});
   const ProgramResult result = registerPair(uav, ugv);
   EXPECT_EQ(result.err, "");
-  EXPECT_EQ(entries("out"),
-            (std::set<std::string>{"aligned.las", "registration.json", "transform.txt"}));
+  EXPECT_EQ(entries("out"), (std::set<std::string>{"aligned.las", "registration.json",
+                                                   "report.html", "transform.txt"}));
   EXPECT_LT(rms(), 0.03);
   EXPECT_NE(contentOf(inFolder("out/transform.txt"))
                 .find("# p_fixed = M * p_moving, metres in "
@@ -65,11 +65,12 @@ TEST_F(FormatsTest, LasIsRegisteredAsPly) {
 TEST_F(FormatsTest, AlignedCloudsComeInTheFormatThatIsAskedFor) {
   const PairFiles files = pair("georeferenced");
   registerPair(files.uav(), files.ugv(), {"--aligned-format", "pcd"});
-  EXPECT_EQ(entries("out"),
-            (std::set<std::string>{"aligned.pcd", "registration.json", "transform.txt"}));
+  EXPECT_EQ(entries("out"), (std::set<std::string>{"aligned.pcd", "registration.json",
+                                                   "report.html", "transform.txt"}));
   registerPair(files.uav(), files.ugv(), {"--aligned-format", "las"});
-  EXPECT_EQ(entries("out"),  // the older one is gone
-            (std::set<std::string>{"aligned.las", "registration.json", "transform.txt"}));
+  EXPECT_EQ(
+      entries("out"),  // the older one is gone
+      (std::set<std::string>{"aligned.las", "registration.json", "report.html", "transform.txt"}));
   expectFailure(
       {"register", files.uav(), files.ugv(), "-o", inFolder("other"), "--aligned-format", "e57"}, 2,
       {"--aligned-format e57"});

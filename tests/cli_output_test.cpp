@@ -38,7 +38,7 @@ TEST_F(OutputTest, OverwriteReplacesResultsAndNothingElse) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   // A picture of an earlier run would show another registration than the report.
   EXPECT_EQ(entries("out"), (std::set<std::string>{"aligned.ply", "notes.txt", "registration.json",
-                                                   "transform.txt"}));
+                                                   "report.html", "transform.txt"}));
   EXPECT_EQ(contentOf(inFolder("out/notes.txt")), "mine");
   EXPECT_NE(contentOf(inFolder("out/transform.txt")), "older");
 }
@@ -50,7 +50,7 @@ TEST_F(OutputTest, ARejectionRemovesTheResultOfAnEarlierRun) {
   const ProgramResult result = runAgricolmap({"register", files.uav(), files.ugv(), "-o",
                                               inFolder("out"), "--overwrite", "--no-pictures"});
   ASSERT_EQ(result.exit_code, 10) << result.err;
-  EXPECT_EQ(entries("out"), (std::set<std::string>{"registration.json"}));
+  EXPECT_EQ(entries("out"), (std::set<std::string>{"registration.json", "report.html"}));
 }
 
 TEST_F(OutputTest, WhatIsSaidToAFullDiskIsAnError) {

@@ -60,7 +60,7 @@ TEST_F(RegisterTest, FindsTheTruthAndWritesEveryFile) {
   EXPECT_EQ(entries("out"),
             (std::set<std::string>{"aligned.ply", "blocks.png", "exg_maps.png", "flow.png",
                                    "overlay_after.png", "overlay_before.png", "registration.json",
-                                   "transform.txt"}));
+                                   "report.html", "transform.txt"}));
   const nlohmann::json errors = errorsOf(inFolder("out/transform.txt"), files);
   EXPECT_TRUE(errors.at("success").get<bool>()) << errors.dump();
   EXPECT_LT(errors.at("rms_m").get<double>(), 0.03);
@@ -133,8 +133,8 @@ TEST_F(RegisterTest, TakesThePriorFromAFileOrFromOffsets) {
             0);
   EXPECT_EQ(jsonOf(inFolder("by_file/registration.json")).dump().find("offset.xyz"),
             std::string::npos);
-  EXPECT_EQ(entries("by_file"),
-            (std::set<std::string>{"aligned.ply", "registration.json", "transform.txt"}));
+  EXPECT_EQ(entries("by_file"), (std::set<std::string>{"aligned.ply", "registration.json",
+                                                       "report.html", "transform.txt"}));
   EXPECT_TRUE(errorsOf(inFolder("by_file/transform.txt"), files).at("success").get<bool>());
 
   // One offset per cloud, named after it, says the same.
@@ -200,8 +200,8 @@ TEST_F(RegisterTest, KeepsARejectedTransformOnRequest) {
   const ProgramResult result = runAgricolmap({"register", files.uav(), files.ugv(), "-o",
                                               inFolder("out"), "--no-pictures", "--keep-rejected"});
   EXPECT_EQ(result.exit_code, 10) << result.err;
-  EXPECT_EQ(entries("out"),
-            (std::set<std::string>{"aligned.ply", "registration.json", "transform.txt"}));
+  EXPECT_EQ(entries("out"), (std::set<std::string>{"aligned.ply", "registration.json",
+                                                   "report.html", "transform.txt"}));
 }
 
 TEST_F(RegisterTest, LeavesOutPointsThatAreNotFinite) {

@@ -177,7 +177,7 @@ void Batch::removeLeftovers(const std::vector<std::size_t>& strips) const {
   std::set<std::string> ids;
   for (const std::size_t i : strips) ids.insert(manifest_.strips[i].id);
   if (strips.size() == manifest_.strips.size()) {
-    ids.insert({"summary.csv", "summary.json", "summary.png"});
+    ids.insert({"summary.csv", "summary.json", "summary.html", "summary.png"});
   }
   std::error_code error;
   std::vector<fs::path> leftovers;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "agricolmap/batch/memory.hpp"
+#include "agricolmap/batch/picture/summary_page.hpp"
 #include "agricolmap/batch/summary.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
@@ -105,7 +106,7 @@ void writeWhole(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
-/// summary.csv, summary.json and the picture.
+/// summary.csv, .json and .html, and the picture.
 void writeSummary(const Batch& batch, const batch::Manifest& manifest, const fs::path& folder,
                   double seconds) {
   std::vector<batch::Record> records;
@@ -114,6 +115,7 @@ void writeSummary(const Batch& batch, const batch::Manifest& manifest, const fs:
   }
   writeWhole(folder / "summary.csv", batch::csvOf(records));
   writeWhole(folder / "summary.json", batch::jsonOf(records, manifest, seconds));
+  writeWhole(folder / "summary.html", batch::summaryPage(records, manifest, seconds));
   if (batch.grounds().empty()) return;
   io::StagedFile picture(folder / "summary.png", true);
   batch::writeSummaryPicture(picture.path(), batch.grounds(), records);
@@ -188,7 +190,7 @@ CommandSlot addBatchCommand(CLI::App& app, const Globals& globals) {
   command->add_option("MANIFEST", arguments->manifest, "YAML: see docs/batch.md");
   command->add_option(
       "-o,--output", arguments->output,
-      "Folder for the results: a folder for each strip, and summary.csv, .json, .png");
+      "Folder for the results: a folder for each strip, and summary.csv, .json, .html, .png");
   command->add_flag("--resume", arguments->resume,
                     "Keep strips that are done and of which nothing has changed");
   command->add_option("--item", arguments->items,
@@ -201,7 +203,8 @@ CommandSlot addBatchCommand(CLI::App& app, const Globals& globals) {
       ->add_option("--memory", arguments->memory,
                    "GiB that all strips at once may take [4/5 of what is available]")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG pictures");
+  command->add_flag("--no-pictures", arguments->no_pictures,
+                    "Write no PNG pictures, and reports of words and numbers only");
   command->add_flag("--list", arguments->list, "Print the ids of the strips and stop");
   command->footer(
       "Exit codes: 0 all accepted; 12 some strips failed; else 10 some rejected; else 11 some "

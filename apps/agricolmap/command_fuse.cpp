@@ -12,6 +12,7 @@
 #include "agricolmap/fuse/cloud_file.hpp"
 #include "agricolmap/fuse/layer_files.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/report/page/shared_map_page.hpp"
 #include "agricolmap/report/pictures/shared_map_picture.hpp"
 #include "common.hpp"
 #include "fuse_sources.hpp"
@@ -72,7 +73,7 @@ fuse::StripPoints pointsOf(const MapClouds& clouds) {
 /// What a fused map of another run would have written: these go when they are not written again.
 bool isForeign(const std::filesystem::path& name) {
   static const std::set<std::string> kFolders{"layers", "fine", "strips"};
-  static const std::set<std::string> kFiles{"map.json",  "map.png",        "cloud.las",
+  static const std::set<std::string> kFiles{"map.json",  "map.html",       "map.png",  "cloud.las",
                                             "cloud.laz", "cloud.copc.laz", "cloud.ply"};
   return !kFolders.contains(name.begin()->string()) && !kFiles.contains(name.string());
 }
@@ -156,7 +157,11 @@ ExitCode runFuse(const FuseArguments& arguments, const Globals& globals) {
     progress.step("picture");
     report::writeSharedMapPicture(folder.path("map.png"), map, pointsOf(clouds), arguments.output);
   }
-  io::writeText(folder.path("map.json"), report::sharedMapJson(map, facts, options));
+  const std::string json = report::sharedMapJson(map, facts, options);
+  io::writeText(folder.path("map.json"), json);
+  io::writeText(
+      folder.path("map.html"),
+      report::sharedMapPage(json, arguments.no_pictures ? nullptr : report::sharedMapScene(map)));
   throwIfInterrupted();
   folder.keepOthers(isForeign);
   folder.commit();

@@ -101,7 +101,8 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
                     "Print all options in force as YAML and stop");
   command->add_flag("--keep-rejected", arguments->keep_rejected,
                     "Write transform.txt and the aligned cloud of a rejected registration, too");
-  command->add_flag("--no-pictures", arguments->no_pictures, "Write no PNG pictures");
+  command->add_flag("--no-pictures", arguments->no_pictures,
+                    "Write no PNG pictures, and reports of words and numbers only");
   arguments->options.addTo(*command);
   return {command, [arguments, &globals] { return runRegister(*arguments, globals); }};
 }

@@ -5,11 +5,13 @@
 #include "agricolmap/config/json.hpp"
 #include "agricolmap/core/convex_hull.hpp"
 #include "agricolmap/core/interrupt.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/path_file.hpp"
 #include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/report/json/registration_json.hpp"
+#include "agricolmap/report/page/registration_page.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 
 namespace agricolmap {
@@ -58,6 +60,26 @@ std::vector<std::string> writeResults(const RegisterRun& run, const LoadedPair& 
   });
 }
 
+/// registration.json and report.html, which holds it.
+void writeReports(const RegisterRun& run, const LoadedPair& pair,
+                  const pipeline::Registration& result, const report::RegistrationReportInfo& info,
+                  const io::StagedOutput& output, Monitor& monitor) {
+  const PointStream& fixed = *pair.fixed->points;
+  report::PageContent page;
+  std::string missing;
+  if (run.pictures) {
+    page.scene = monitor.run(Stage::kPictures, [&] {
+      return report::pageScene(fixed, pair.moving, result, info.prior);
+    });
+  } else {
+    missing = "the registration was run with --no-pictures";
+  }
+  page.facts = report::pageFacts(fixed, pair.moving, result, run.options, run.preset, missing);
+  page.report = report::registrationJson(fixed, pair.moving, result, monitor, info);
+  io::writeText(output.path("registration.json"), page.report.dump(2) + "\n");
+  report::writeRegistrationPage(output.path(report::kPageName), page);
+}
+
 /// By points spread over the strip, strays left out.
 std::vector<Eigen::Vector2d> outlineOf(const pipeline::Registration& result, const Cloud& moving,
                                        const Eigen::Affine3d& guess) {
@@ -98,8 +120,7 @@ RegisterResult registerInto(const RegisterRun& run, const FixedSource& fixed,
   const pipeline::Registration& found = result.registration;
   say(monitor.warnings());
   info.pictures = writeResults(run, pair, found, output, monitor, say);
-  report::writeRegistrationJson(output.path("registration.json"), *pair.fixed->points, pair.moving,
-                                found, monitor, info);
+  writeReports(run, pair, found, info, output, monitor);
   throwIfInterrupted();
   result.outline = outlineOf(found, pair.moving, info.prior);
   return result;
@@ -108,6 +129,7 @@ RegisterResult registerInto(const RegisterRun& run, const FixedSource& fixed,
 std::vector<std::string> staleResults() {
   std::vector<std::string> stale = report::pictureNames();
   stale.emplace_back("transform.txt");
+  stale.emplace_back(report::kPageName);
   for (const std::string& name : alignedNames()) stale.push_back(name);
   return stale;
 }

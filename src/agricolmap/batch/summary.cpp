@@ -80,21 +80,25 @@ std::string csvOf(std::span<const Record> records) {
   return text;
 }
 
-std::string jsonOf(std::span<const Record> records, const Manifest& manifest, double seconds) {
+nlohmann::ordered_json summaryJson(std::span<const Record> records, const Manifest& manifest,
+                                   double seconds) {
   const Counts counts = countsOf(records);
   nlohmann::ordered_json strips = nlohmann::ordered_json::array();
   for (const Record& record : records) strips.push_back(toJson(record));
-  const nlohmann::ordered_json json = {{"format", "agricolmap-batch-summary"},
-                                       {"format_version", 1},
-                                       {"manifest", report::validUtf8(manifest.file.string())},
-                                       {"seconds", seconds},
-                                       {"counts",
-                                        {{"accepted", counts.accepted},
-                                         {"rejected", counts.rejected},
-                                         {"ambiguous", counts.ambiguous},
-                                         {"failed", counts.failed}}},
-                                       {"strips", std::move(strips)}};
-  return json.dump(2) + "\n";
+  return {{"format", "agricolmap-batch-summary"},
+          {"format_version", 1},
+          {"manifest", report::validUtf8(manifest.file.string())},
+          {"seconds", seconds},
+          {"counts",
+           {{"accepted", counts.accepted},
+            {"rejected", counts.rejected},
+            {"ambiguous", counts.ambiguous},
+            {"failed", counts.failed}}},
+          {"strips", std::move(strips)}};
+}
+
+std::string jsonOf(std::span<const Record> records, const Manifest& manifest, double seconds) {
+  return summaryJson(records, manifest, seconds).dump(2) + "\n";
 }
 
 }  // namespace agricolmap::batch

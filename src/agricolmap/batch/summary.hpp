@@ -27,6 +27,9 @@ std::string lineOf(const Record& record, std::size_t id_width);
 
 /// summary.csv: a header and a line for each strip (RFC 4180).
 std::string csvOf(std::span<const Record> records);
+/// What summary.json has.
+nlohmann::ordered_json summaryJson(std::span<const Record> records, const Manifest& manifest,
+                                   double seconds);
 /// summary.json.
 std::string jsonOf(std::span<const Record> records, const Manifest& manifest, double seconds);
 
