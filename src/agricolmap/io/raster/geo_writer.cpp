@@ -2,14 +2,18 @@
 
 #include <cpl_error.h>
 #include <cpl_string.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <mutex>
 #include <system_error>
 #include <type_traits>
+#include <vector>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/interrupt.hpp"
@@ -223,6 +227,22 @@ int goOn(double /*done*/, const char* /*message*/, void* /*data*/) {
   return TRUE;
 }
 
+/// What the system says to more bytes in a file that could not be written; nothing when it takes
+/// them. GDAL 3.10 and its libtiff keep it to themselves.
+std::string refusal(const std::filesystem::path& file) {
+  constexpr std::size_t kChunk = std::size_t{1} << 16;
+  constexpr int kMost = 256;
+  const int to = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  if (to < 0) return std::generic_category().message(errno);
+  const std::vector<char> zeros(kChunk);
+  int error = 0;
+  for (int i = 0; i < kMost && error == 0; ++i) {
+    if (::write(to, zeros.data(), kChunk) < 0) error = errno;
+  }
+  if (::close(to) != 0 && error == 0) error = errno;
+  return error == 0 ? "" : std::generic_category().message(error);
+}
+
 }  // namespace
 
 void writeLayer(const OutputPath& path, const GeoLayer& layer) {
@@ -235,7 +255,9 @@ void writeLayer(const OutputPath& path, const GeoLayer& layer) {
   // Some of a file is written, and of a full disk is heard, on closing only.
   written.reset();
   if (made && !failure.happened()) return;
-  const std::string& reason = failure.reason();
+  std::string reason = failure.reason();
+  const std::string refused = refusal(path.file());
+  if (reason.find(refused) == std::string::npos) reason += fmt::format(" ({})", refused);
   std::error_code ignored;
   std::filesystem::remove(path.file(), ignored);
   throwIfInterrupted();

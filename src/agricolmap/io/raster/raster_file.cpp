@@ -1,12 +1,14 @@
 #include "agricolmap/io/raster/raster_file.hpp"
 
 #include <cpl_error.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdarg>
 #include <limits>
 #include <vector>
 
@@ -188,7 +190,18 @@ void readWide(const Bands& bands, const Section& section, const NoData& nodata,
 
 }  // namespace
 
-void silenceGdal() { CPLSetErrorHandler(CPLQuietErrorHandler); }
+void silenceGdal() {
+  CPLSetErrorHandler(CPLQuietErrorHandler);
+  // GDAL 3.10 leaves libtiff, where that is a library of its own, to say on stderr itself what
+  // failed.
+  using Handler = void (*)(const char*, const char*, va_list);
+  using SetHandler = Handler (*)(Handler);
+  for (const char* setter : {"TIFFSetErrorHandler", "TIFFSetWarningHandler"}) {
+    if (void* const set = ::dlsym(RTLD_DEFAULT, setter)) {
+      reinterpret_cast<SetHandler>(set)(nullptr);
+    }
+  }
+}
 
 RasterShape readRasterShape(const std::filesystem::path& path) {
   const QuietGdal quiet;
