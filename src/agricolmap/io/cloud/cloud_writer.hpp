@@ -21,8 +21,8 @@ void writePly(const OutputPath& path, const Cloud& cloud, const PointMove& targe
 /// point.
 void writePcd(const OutputPath& path, const Cloud& cloud, const PointMove& target_from_file);
 
-/// As writePly, in any of the formats; LAS is in millimetres. Throws UsageError for LAZ where there is
-/// no LASzip.
+/// As writePly, in any of the formats; LAS is in millimetres. Throws UsageError for LAZ where there
+/// is no LASzip.
 void writeCloud(const OutputPath& path, const Cloud& cloud, CloudFormat format,
                 const PointMove& target_from_file = {});
 
