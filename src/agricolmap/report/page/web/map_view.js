@@ -164,20 +164,18 @@ export class MapView {
     const y = this.height - 14;
     const width = step * this.scale;
     context.font = "600 13px system-ui, sans-serif";
-    context.lineJoin = "round";
-    for (const [line, colour] of [[4, "#000000c0"], [0, "#ffffff"]]) {
-      context.strokeStyle = context.fillStyle = colour;
-      context.lineWidth = line || 2;
-      context.beginPath();
-      context.moveTo(14, y - 5);
-      context.lineTo(14, y);
-      context.lineTo(14 + width, y);
-      context.lineTo(14 + width, y - 5);
-      context.stroke();
-      const text = step < 1 ? `${Math.round(100 * step)} cm` : `${step} m`;
-      if (line) context.strokeText(text, 22 + width, y + 1);
-      else context.fillText(text, 22 + width, y + 1);
-    }
+    const text = step < 1 ? `${Math.round(100 * step)} cm` : `${step} m`;
+    context.fillStyle = "#000000b3";
+    context.fillRect(6, y - 15, width + context.measureText(text).width + 24, 23);
+    context.strokeStyle = context.fillStyle = "#ffffff";
+    context.lineWidth = 2;
+    context.beginPath();
+    context.moveTo(14, y - 5);
+    context.lineTo(14, y);
+    context.lineTo(14 + width, y);
+    context.lineTo(14 + width, y - 5);
+    context.stroke();
+    context.fillText(text, 22 + width, y + 1);
   }
 
   zoom(factor, x = this.width / 2, y = this.height / 2) {
