@@ -2,9 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
-
 #include "support/cli_fixture.hpp"
 
 namespace agricolmap::test {
@@ -19,15 +16,10 @@ class ShellTest : public CliTest {
   std::string offered(const std::string& line) const {
     const ProgramResult script = runAgricolmap({"document-completion", "bash"});
     const std::string file = write("completion.bash", script.out);
-    const std::string command = "bash -c 'source " + file + "; COMP_WORDS=(" + line +
-                                "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _agricolmap;" +
-                                " echo \"${COMPREPLY[*]}\"' 2>&1";
-    std::string words;
-    std::array<char, 4096> buffer{};
-    std::FILE* pipe = ::popen(command.c_str(), "r");
-    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) words += buffer.data();
-    ::pclose(pipe);
-    return words;
+    const std::string ask = "bash -c 'source " + file + "; COMP_WORDS=(" + line +
+                            "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _agricolmap;" +
+                            " echo \"${COMPREPLY[*]}\"'; exit;";
+    return runInShell(ask, {}).out;
   }
 };
 
