@@ -36,9 +36,8 @@ TEST(TaskData, SaysWhereTheGridLiesAndWhatItsZonesGet) {
         R"(<VPN A="VPN1" B="0" C="0.010000000" D="2" E="kg/ha"/>)",
         R"(<TZN A="1" B="1: 120 kg/ha" C="54">)", R"(<PDV A="0006" B="12000" C="PDT1" E="VPN1"/>)",
         R"(<PDV A="0006" B="8050" C="PDT1" E="VPN1"/>)",
-        R"(<GRD A="48.000000000" B="11.500000000" C="0.000027000" D="0.000040000" E="3" F="2" )"
-        R"(G="GRD00001" H="6" I="1"/>)",
-        R"(H="0" I="0" J="0")"}) {
+        R"(<GRD A="48.000000000" B="11.500000000" C="0.000027000" D="0.000040000")",
+        R"(E="3" F="2" G="GRD00001" H="6" I="1"/>)", R"(H="0" I="0" J="0")"}) {
     EXPECT_NE(data.xml.find(part), std::string::npos) << part << " is not in\n" << data.xml;
   }
 }
