@@ -32,9 +32,9 @@ void put(Message& message, std::size_t at, Number number) {
 Message ofCamera() {
   Message message{
       2, 2, {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}, {"rgb", 16, 7, 1}}, false, 32, 72, {}};
-  message.data.resize(2 * 72);
+  message.data.resize(144);
   for (std::uint32_t i = 0; i < 4; ++i) {
-    const std::size_t at = i / 2 * 72 + i % 2 * 32;
+    const std::size_t at = std::size_t{i} / 2 * 72 + std::size_t{i} % 2 * 32;
     put(message, at, static_cast<float>(i) + 0.5F);
     put(message, at + 4, 2.0F * static_cast<float>(i));
     put(message, at + 8, -1.0F);
