@@ -92,6 +92,17 @@ std::string versionText() {
                      revision.empty() ? "" : " (" + revision + ")");
 }
 
+std::vector<CommandSlot> addCommands(CLI::App& app, const Globals& globals) {
+  return {addRegisterCommand(app, globals), addSimulateCommand(app, globals),
+          addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
+          addBatchCommand(app, globals),    addConvertCommand(app, globals),
+          addImportCommand(app, globals),   addApplyCommand(app, globals),
+          addFuseCommand(app, globals),     addDiffCommand(app, globals),
+          addFactsCommand(app, globals),    addPrescribeCommand(app, globals),
+          addInfoCommand(app, globals),     addDocumentCommand(app, globals),
+          addManualsCommand(app, globals),  addCompletionCommand(app, globals)};
+}
+
 ExitCode run(int argc, char** argv) {
   Globals globals;
   globals.command_line.assign(argv, argv + argc);
@@ -108,15 +119,7 @@ ExitCode run(int argc, char** argv) {
   app.add_flag("-v,--verbose", globals.verbose, "Say more on stderr");
   app.add_flag("-q,--quiet", globals.quiet, "Say nothing but errors");
   app.add_flag("--overwrite", globals.overwrite, "Replace results that exist");
-  const std::vector<CommandSlot> commands = {
-      addRegisterCommand(app, globals), addSimulateCommand(app, globals),
-      addEvaluateCommand(app, globals), addControlPointsCommand(app, globals),
-      addBatchCommand(app, globals),    addConvertCommand(app, globals),
-      addImportCommand(app, globals),   addApplyCommand(app, globals),
-      addFuseCommand(app, globals),     addDiffCommand(app, globals),
-      addFactsCommand(app, globals),    addPrescribeCommand(app, globals),
-      addInfoCommand(app, globals),     addDocumentCommand(app, globals),
-      addManualsCommand(app, globals),  addCompletionCommand(app, globals)};
+  const std::vector<CommandSlot> commands = addCommands(app, globals);
   try {
     // The parser takes them from the end.
     std::vector<std::string> words;
