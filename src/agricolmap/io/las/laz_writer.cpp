@@ -47,8 +47,7 @@ class Writer {
   static const LaszipLibrary& writing() {
     const LaszipLibrary* library = laszip();
     if (library == nullptr) {
-      throw UsageError(std::string("writing LAZ and COPC needs LASzip: ") + kNoLaszip +
-                       "write LAS");
+      throw UsageError(std::string("LAZ and COPC cannot be written: ") + kNoLaszip + "write LAS");
     }
     return *library;
   }
