@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/map/soil_texture.hpp"
 
 namespace agricolmap::map {
 
@@ -93,7 +94,7 @@ bool uses(SignalTerm term, int channel) {
   return channel == kHeightChannel;
 }
 
-Coarse averageCells(const GridMap& map, int factor) {
+Coarse averageCells(const GridMap& map, int factor, SignalTerm term) {
   Coarse coarse;
   coarse.frame = map.frame;
   coarse.frame.cell = map.frame.cell * factor;
@@ -103,6 +104,8 @@ Coarse averageCells(const GridMap& map, int factor) {
   const int cols = coarse.frame.cols;
   coarse.weight = Raster<float>(rows, cols);
   for (auto& channel : coarse.channel) channel = Raster<float>(rows, cols);
+  const std::optional<Raster<float>> texture =
+      uses(term, kLuminanceChannel) ? soilTexture(map) : std::nullopt;
   const float share = 1.0F / static_cast<float>(factor * factor);
   parallelFor(static_cast<std::size_t>(rows), [&](std::size_t row) {
     const int r = static_cast<int>(row);
@@ -115,7 +118,7 @@ Coarse averageCells(const GridMap& map, int factor) {
         coarse.weight[j] += 1.0F;
         coarse.channel[kGreenChannel][j] += map.exg[i];
         coarse.channel[kHeightChannel][j] += map.height[i];
-        coarse.channel[kLuminanceChannel][j] += luminance(map.colour[i]);
+        coarse.channel[kLuminanceChannel][j] += texture ? (*texture)[i] : luminance(map.colour[i]);
       }
     }
     for (int c = 0; c < cols; ++c) {
@@ -174,7 +177,7 @@ Raster<float> weightedBoxMean(const Raster<float>& value, const Raster<float>& w
 }
 
 SignalMap makeSignalMap(const GridMap& map, int factor, const SignalOptions& options) {
-  Coarse coarse = averageCells(map, factor);
+  Coarse coarse = averageCells(map, factor, options.term);
   SignalMap signal;
   signal.frame = coarse.frame;
   signal.weight = std::move(coarse.weight);

@@ -28,7 +28,8 @@ struct SignalOptions {
 void listOptions(OptionTable& table, SignalOptions& options);
 
 /// The channels of a SignalMap. Plants tell places apart by the first two, and they grow; soil,
-/// stones, straw and tillage by the third, and shadows move.
+/// stones, straw and tillage by the third, which is the soil's texture (`soil_texture.hpp`) where
+/// plants can be told from it, free of leaves and shadows, and else the luminance as it is.
 inline constexpr int kGreenChannel = 0;
 inline constexpr int kHeightChannel = 1;
 inline constexpr int kLuminanceChannel = 2;
@@ -40,7 +41,8 @@ struct SignalMap {
   GridFrame frame;
   Raster<float> weight;  ///< share of filled fine cells, 0…1
   Raster<float> channel[kSignalChannels];
-  /// What was divided by: ExG units, metres, share of white. 0: the channel is left out, or flat.
+  /// What was divided by: ExG units, metres, share of white or, of soil texture, its own
+  /// deviations. 0: the channel is left out, or flat.
   double deviation[kSignalChannels] = {};
   bool has(int k) const { return deviation[k] > 0.0; }
 };
