@@ -9,6 +9,9 @@ TEXTS = ("suite", "settings", "case_name", "dataset", "kind", "told", "method", 
          "message", "source", "options")
 WHOLE = ("seed", "field", "threads")
 FLAGS = ("negative", "accepted", "right", "right_in_plane")
+# The error of the strip's centre and what is stated of it.
+CENTRE = ("centre_error_x", "centre_error_y", "centre_deviation_x", "centre_deviation_y",
+          "centre_correlation")
 # Empty where there is no such number.
 NUMBERS = (
     "setting", "guess_scale", "guess_translation", "guess_heading",
@@ -16,10 +19,11 @@ NUMBERS = (
     "aligned_rms_horizontal", "best_affine_rms", "worst", "rms_to_best_affine", "e_t", "e_r", "e_s",
     "bend_gain", "slips", "slip_place", "places_covered",
     "plane_probability", "place_probability", "uniqueness", "significance", "decoy",
-    "agreeing", "blocks", "expected_rms", "systematic_rms", "local_rms", "height_deviation",
+    "agreeing", "blocks", "expected_rms", "systematic_rms", "scatter_rms", "local_rms",
+    "height_deviation",
     "heights_limited",
     "overlap", "block_rms", "correlation", "attempts", "pose_mahalanobis2", "centre_mahalanobis2", "height_mahalanobis2",
-    "height_error",
+    *CENTRE, "height_error",
     "matches", "matches_right", "matches_coherent", "rematches", "rematches_right",
     "rematches_coherent", "fixed_points", "moving_points", "make_s", "run_s", "cpu_s")
 COLUMNS = TEXTS + WHOLE + FLAGS + NUMBERS
@@ -30,7 +34,7 @@ EARLIER = ("in_process", "wall_s", "peak_mib", "idle_mib", "probability")
 # Rows that documents quote may be older than these.
 LATER = ("place_probability", "decoy", "systematic_rms", "aligned_rms", "aligned_rms_horizontal",
          "best_affine_rms", "bend_gain", "slips", "slip_place", "places_covered",
-         "heights_limited", "height_error")
+         "heights_limited", "height_error", "scatter_rms", *CENTRE)
 KEY = ["suite", "settings", "case_name", "seed", "setting", "guess_scale", "method"]
 STATUSES = ("accepted", "rejected", "ambiguous", "failed", "skipped")
 

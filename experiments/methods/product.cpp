@@ -85,6 +85,7 @@ void addEvidence(const pipeline::Registration& result, MethodOutcome& outcome) {
                        {{"expected_rms", placed.uncertainty->expected_rms},
                         {"systematic_rms", placed.uncertainty->systematic_rms},
                         {"local_rms", placed.uncertainty->local_rms},
+                        {"scatter_rms", placed.uncertainty->scatter_rms},
                         {"height_deviation", placed.uncertainty->height_deviation}});
   outcome.stated = StatedError{*placed.uncertainty, result.maps.frames.levelled_from_fixed};
 }

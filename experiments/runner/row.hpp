@@ -85,8 +85,9 @@ struct Row {
   double blocks = kNotKnown;    ///< of so many that can be compared
   double expected_rms = kNotKnown;
   double systematic_rms =
-      kNotKnown;  ///< part of that which plants and soil contradict one another by
-  double local_rms = kNotKnown;
+      kNotKnown;                   ///< part of that which plants and soil contradict one another by
+  double scatter_rms = kNotKnown;  ///< what blocks differ by,
+  double local_rms = kNotKnown;    ///< and what neighbours among them share of that [m]
   double height_deviation = kNotKnown;  ///< stated [m]; empty without heights
   double heights_limited = kNotKnown;   ///< 1: heights are not believed, 0: they are
   double overlap = kNotKnown;
@@ -100,7 +101,13 @@ struct Row {
   double pose_mahalanobis2 = kNotKnown;
   double centre_mahalanobis2 = kNotKnown;
   double height_mahalanobis2 = kNotKnown;
-  double height_error = kNotKnown;  ///< by how much the strip lies too high, on average [m]
+  // How far off the strip's centre lies in the fixed map's plane, and what is stated of that [m].
+  double centre_error_x = kNotKnown;
+  double centre_error_y = kNotKnown;
+  double centre_deviation_x = kNotKnown;
+  double centre_deviation_y = kNotKnown;
+  double centre_correlation = kNotKnown;  ///< of the two
+  double height_error = kNotKnown;        ///< by how much the strip lies too high, on average [m]
 
   // Of methods that match points: all matches, those within 4 cm of the truth, those that the
   // method took for coherent; and of a second matching from what the first gave.

@@ -149,6 +149,13 @@ void PairRuns::fillErrors(const MethodOutcome& outcome, const Moving& moving, Ro
                                        moving.cloud, moving.truth)) {
     row.pose_mahalanobis2 = coverage->pose_distance2;
     row.centre_mahalanobis2 = coverage->shift_distance2;
+    // By its definition the error is what the truth differs by from what was found.
+    row.centre_error_x = -coverage->error[0];
+    row.centre_error_y = -coverage->error[1];
+    const auto& covariance = outcome.stated->pose.covariance;
+    row.centre_deviation_x = std::sqrt(covariance(0, 0));
+    row.centre_deviation_y = std::sqrt(covariance(1, 1));
+    row.centre_correlation = covariance(0, 1) / (row.centre_deviation_x * row.centre_deviation_y);
     row.height_error = coverage->height_error;
     row.height_mahalanobis2 = coverage->height_distance2;
   }

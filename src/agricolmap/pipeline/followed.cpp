@@ -84,7 +84,7 @@ void followBends(const refine::PairSignals& signals, const SearchSpace& space,
       verdict::doubtOfBend(followed.bend.rms, *placed.uncertainty, *next.uncertainty);
   // One that with its doubt leaves the blocks as far apart as they were moves points for nothing.
   if (!placed.evidence.parts.apart() &&
-      std::hypot(next.uncertainty->local_rms, doubt) >= placed.uncertainty->local_rms) {
+      std::hypot(next.uncertainty->scatter_rms, doubt) >= placed.uncertainty->scatter_rms) {
     return;
   }
   next.uncertainty->expected_rms =

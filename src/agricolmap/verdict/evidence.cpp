@@ -23,7 +23,11 @@ namespace {
 
 /// What decoys hardly ever surpass, for a place that was not measured against them.
 constexpr double kHighestDecoy = 8.0;
-constexpr double kMinSeenShare = 0.3;  // of a block's area, in both maps
+/// Where a tight guess leaves nothing else in reach, a place is compared with what chance gives at
+/// one: the refinement turns six parameters until the score is highest, and the square of that of
+/// noise is as large as they are many.
+constexpr double kHighestByFreedom = 2.45;  // the root of six
+constexpr double kMinSeenShare = 0.3;       // of a block's area, in both maps
 /// As many blocks as a share of agreeing ones needs to mean something, and their least side [m]:
 /// smaller ones hold too little to be placed alone.
 constexpr double kFewestBlocks = 12.0;
@@ -115,8 +119,7 @@ Evidence measureEvidence(const correlation::StripScore& score, const Eigen::Affi
   const correlation::ScorePeaks peaks =
       score.peaks(pose, strip.centre, space.uncertainty.translation, options.exclusion);
   evidence.significance = peaks.significance;
-  // Next to nothing else in reach: compared with one deviation, what chance gives anywhere.
-  evidence.uniqueness = peaks.significance / std::max({peaks.other, rival, 1.0});
+  evidence.uniqueness = peaks.significance / std::max({peaks.other, rival, kHighestByFreedom});
   evidence.strip = strip;
   evidence.block_side = blockSide(strip, options);
   const std::vector<map::Block> blocks = map::cutBlocks(score.moving(), strip, evidence.block_side);

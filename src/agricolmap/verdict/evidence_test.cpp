@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "agricolmap/correlation/map_signals.hpp"
 #include "agricolmap/map/test_scene.hpp"
 
@@ -57,6 +59,16 @@ TEST_F(EvidenceTest, ARivalMakesAPlaceLessUnique) {
   const Evidence rivalled = at(scene_.pose, 0.9 * alone.significance);
   EXPECT_NEAR(rivalled.uniqueness, 1.0 / 0.9, 1e-9);
   EXPECT_EQ(rivalled.significance, alone.significance);
+}
+
+TEST_F(EvidenceTest, ATightGuessDoesNotMakeAPlaceUnique) {
+  const Eigen::Affine2d wrong = shifted(scene_.pose, {0.9, 0.4});
+  const Evidence wide = at(wrong);
+  space_.centre = wrong * scene_.pose.inverse() * scene_.middle;
+  space_.uncertainty.translation = 0.1;
+  const Evidence tight = at(wrong);
+  EXPECT_EQ(tight.significance, wide.significance);
+  EXPECT_LE(tight.uniqueness, tight.significance / std::sqrt(5.9));
 }
 
 TEST_F(EvidenceTest, BlocksOffTheMapAreNotCounted) {

@@ -10,8 +10,6 @@ namespace {
 
 /// A registration is right within this RMS displacement [m].
 constexpr double kLimit = 0.05;
-/// Part of what the blocks differ by that is deformation of the strip; the rest is their own noise.
-constexpr double kLocalShare = 0.6;
 /// Share of blocks that agree by chance: a circle of 8 cm in one of half a metre.
 constexpr double kChanceAgreement = 0.026;
 
@@ -63,8 +61,7 @@ double placeProbability(const VerdictFacts& facts) {
 }
 
 double planeProbability(const VerdictFacts& facts) {
-  return placeProbability(facts) *
-         withinLimit(std::hypot(facts.expected_rms, kLocalShare * facts.local_rms));
+  return placeProbability(facts) * withinLimit(std::hypot(facts.expected_rms, facts.local_rms));
 }
 
 std::string percentOf(double probability) {

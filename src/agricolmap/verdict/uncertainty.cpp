@@ -29,6 +29,8 @@ namespace {
 constexpr std::size_t kLeastBlocks = 4;
 constexpr int kParameters = 5;
 constexpr double kLeastRadius = 0.5;  // [m]
+/// Blocks whose middles are no further apart are neighbours, corner to corner included [sides].
+constexpr double kNeighbours = 1.6;
 /// Per axis, of what is left when nothing disagrees along a strip [m]; from calibration.
 constexpr double kCommon = 0.003;
 
@@ -60,8 +62,8 @@ Eigen::Matrix<double, 6, 6> PoseUncertainty::covarianceWithHeight(double turn) c
 }
 
 double doubtOfBend(double rms, const PoseUncertainty& bent, const PoseUncertainty& straight) {
-  if (!(bent.local_rms > 0.0)) return 0.0;
-  return rms * std::min(1.0, straight.local_rms / bent.local_rms);
+  if (!(bent.scatter_rms > 0.0)) return 0.0;
+  return rms * std::min(1.0, straight.scatter_rms / bent.scatter_rms);
 }
 
 Eigen::Matrix2d placeCovariance(const PoseUncertainty& pose, const Eigen::Matrix2d& of_fit) {
@@ -101,9 +103,32 @@ double expectedOver(const std::vector<BlockShift>& strip, const std::vector<Bloc
     for (const BlockShift& other : compared) {
       beyond2 = std::min(beyond2, (block.place - other.place).squaredNorm());
     }
-    sum += pose.at(block.place).trace() + pose.local_rms * pose.local_rms * beyond2 / radius2;
+    sum += pose.at(block.place).trace() + pose.scatter_rms * pose.scatter_rms * beyond2 / radius2;
   }
   return std::sqrt(sum / static_cast<double>(strip.size()));
+}
+
+/// What the blocks' residuals of a fit, one each, have in common with those of their neighbours
+/// [m²]: deformation is smooth, and what plants did or noise moved of one block says nothing of the
+/// next. `hat(i, j)`: how far the fit alone makes residuals i and j alike, of a `variance` per
+/// axis.
+template <typename Hat>
+double sharedByNeighbours(const std::vector<BlockShift>& blocks,
+                          const std::vector<Eigen::Vector2d>& residuals, double variance,
+                          double reach, const Hat& hat) {
+  double sum = 0.0;
+  double pairs = 0.0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    for (std::size_t j = i + 1; j < blocks.size(); ++j) {
+      if ((blocks[i].place - blocks[j].place).norm() > reach) continue;
+      sum += residuals[i].dot(residuals[j]) + variance * hat(i, j);
+      pairs += 1.0;
+    }
+  }
+  const double all = 2.0 * variance;
+  if (pairs == 0.0) return all;
+  // Of few pairs chance makes it too small as easily as too large: a deviation of it on top.
+  return std::min(all, std::max(0.0, sum / pairs) + all / std::sqrt(2.0 * pairs));
 }
 
 }  // namespace
@@ -138,12 +163,23 @@ std::optional<PoseUncertainty> estimateUncertainty(
   const Eigen::LDLT<Square> solver(normal);
   const Parameters fit = solver.solve(right);
   double residual2 = 0.0;
+  std::vector<Eigen::Vector2d> residuals;
   for (const BlockShift& block : blocks) {
-    residual2 += (block.shift - result.jacobian(block.place) * fit).squaredNorm();
+    residuals.emplace_back(block.shift - result.jacobian(block.place) * fit);
+    residual2 += residuals.back().squaredNorm();
   }
   const double freedom = std::max(1.0, 2.0 * static_cast<double>(blocks.size()) - kParameters);
   const double variance = residual2 / freedom;
-  result.local_rms = std::sqrt(2.0 * variance);
+  result.scatter_rms = std::sqrt(2.0 * variance);
+  const Square inverse = solver.solve(Square::Identity());
+  const double reach =
+      kNeighbours * evidence.block_side * std::sqrt(std::abs(pose.linear().determinant()));
+  result.local_rms = std::sqrt(
+      sharedByNeighbours(blocks, residuals, variance, reach, [&](std::size_t i, std::size_t j) {
+        return (result.jacobian(blocks[i].place) * inverse *
+                result.jacobian(blocks[j].place).transpose())
+            .trace();
+      }));
   // `fit` is what the pose still misses of the blocks' own best affine: counted as well.
   double offset2 = 0.0;
   for (const BlockShift& block : blocks) {
@@ -154,7 +190,7 @@ std::optional<PoseUncertainty> estimateUncertainty(
   const double scale =
       options.inflation * options.inflation * (variance + offset2 * count / kParameters) +
       options.floor * options.floor * count;
-  result.covariance = scale * solver.solve(Square::Identity());
+  result.covariance = scale * inverse;
   // In any direction, as a shift: what it is of heading and scales the blocks' scatter holds.
   result.systematic_rms = systematic;
   result.covariance.diagonal().head<2>().array() += 0.5 * systematic * systematic;

@@ -40,7 +40,10 @@ struct PoseUncertainty {
   /// Share of that which all blocks may have in common, because what the maps show of plants and of
   /// soil contradict one another, and for wind leans all plants one way [m].
   double systematic_rms = 0.0;
-  double local_rms = 0.0;  ///< what the blocks differ by after the best affine: drift, wind [m]
+  double scatter_rms = 0.0;  ///< what the blocks differ by after the best affine [m]
+  /// What neighbours among them share of that, at most: drift, a bend, which no affine undoes. The
+  /// rest each block has of its own: leaves, shadows, noise [m].
+  double local_rms = 0.0;
 
   /// With the height among the shifts: of (δx, δy, δz [m], δψ [rad], δa, δb), along the axes of a
   /// frame against which the levelled one is turned by `turn` [rad].

@@ -18,12 +18,10 @@ map::SignalMap texture(const Eigen::Vector2d& corner, int rows, int cols, const 
                            [&](const Eigen::Vector2d& p) { return field.at(p + shift(p)); });
 }
 
-/// Of a strip from x = 1 to 11 m, on a map that ends at `end` [m].
-PoseUncertainty uncertaintyOf(double bend, double end = 12.0) {
+/// Of a strip from x = 1 to 11 m whose points are moved by `bent`, on a map that ends at `end` [m].
+template <typename Shift>
+PoseUncertainty uncertaintyOf(const Shift& bent, double end) {
   const auto none = [](const Eigen::Vector2d&) { return Eigen::Vector2d(0.0, 0.0); };
-  const auto bent = [&](const Eigen::Vector2d& p) {
-    return Eigen::Vector2d(0.0, bend * std::sin(p.x()));
-  };
   const map::SignalMap fixed = texture({0.0, 0.0}, 100, static_cast<int>(end / 0.04), none);
   const map::SignalMap moving = texture({1.0, 1.0}, 50, 250, bent);
   Evidence evidence;
@@ -34,17 +32,35 @@ PoseUncertainty uncertaintyOf(double bend, double end = 12.0) {
   return found.value_or(PoseUncertainty{});
 }
 
+PoseUncertainty uncertaintyOf(double bend, double end = 12.0) {
+  return uncertaintyOf(
+      [&](const Eigen::Vector2d& p) { return Eigen::Vector2d(0.0, bend * std::sin(p.x())); }, end);
+}
+
 TEST(Uncertainty, IsSmallWhereTheBlocksAgree) {
   const PoseUncertainty exact = uncertaintyOf(0.0);
-  EXPECT_LT(exact.local_rms, 0.002);
+  EXPECT_LT(exact.scatter_rms, 0.002);
   EXPECT_LT(exact.expected_rms, 0.003);
   EXPECT_GT(exact.covariance.diagonal().minCoeff(), 0.0);
 }
 
 TEST(Uncertainty, GrowsWithWhatNoAffineUndoes) {
   const PoseUncertainty bent = uncertaintyOf(0.03);
-  EXPECT_NEAR(bent.local_rms, 0.03 / std::sqrt(2.0), 0.012);
+  EXPECT_NEAR(bent.scatter_rms, 0.03 / std::sqrt(2.0), 0.012);
   EXPECT_GT(bent.expected_rms, 2.0 * uncertaintyOf(0.0).expected_rms);
+  EXPECT_GT(bent.local_rms, 0.6 * bent.scatter_rms) << "neighbours are bent alike";
+}
+
+TEST(Uncertainty, WhatEachBlockHasOfItsOwnIsNoDeformation) {
+  // Of every square of the blocks' size another shift of 2 cm.
+  const auto own = [](const Eigen::Vector2d& p) {
+    const double square = std::floor(p.x()) + 10.0 * std::floor(p.y());
+    const double direction = 2.4 * square * square;
+    return Eigen::Vector2d(0.02 * std::cos(direction), 0.02 * std::sin(direction));
+  };
+  const PoseUncertainty found = uncertaintyOf(own, 12.0);
+  EXPECT_NEAR(found.scatter_rms, 0.02, 0.006);
+  EXPECT_LT(found.local_rms, 0.6 * found.scatter_rms);
 }
 
 TEST(Uncertainty, APointFarFromTheMiddleIsLessCertain) {
@@ -94,8 +110,8 @@ TEST(Uncertainty, GrowsWithPartsThatLieElsewhere) {
   evidence.parts.displaced = {part};
   const auto seeing = estimate();
   ASSERT_TRUE(seeing.has_value());
-  EXPECT_GT(seeing->local_rms, 0.1);
-  EXPECT_LT(blind->local_rms, 0.05);
+  EXPECT_GT(seeing->scatter_rms, 0.1);
+  EXPECT_LT(blind->scatter_rms, 0.05);
   EXPECT_GT(seeing->expected_rms, 2.0 * blind->expected_rms);
 }
 
@@ -113,14 +129,14 @@ TEST(Uncertainty, NeedsBlocks) {
 
 TEST(DoubtOfBend, IsThatOfWhatTheBendLeaves) {
   PoseUncertainty bent, straight;
-  bent.local_rms = 0.04;
-  straight.local_rms = 0.01;  // drift of dead reckoning, and little else
+  bent.scatter_rms = 0.04;
+  straight.scatter_rms = 0.01;  // drift of dead reckoning, and little else
   EXPECT_DOUBLE_EQ(doubtOfBend(0.03, bent, straight), 0.0075);
-  straight.local_rms = 0.035;  // plants that grew
+  straight.scatter_rms = 0.035;  // plants that grew
   EXPECT_GT(doubtOfBend(0.03, bent, straight), 0.025);
-  straight.local_rms = 0.05;
+  straight.scatter_rms = 0.05;
   EXPECT_DOUBLE_EQ(doubtOfBend(0.03, bent, straight), 0.03);
-  bent.local_rms = 0.0;
+  bent.scatter_rms = 0.0;
   EXPECT_EQ(doubtOfBend(0.03, bent, straight), 0.0);
 }
 

@@ -228,6 +228,7 @@ Json uncertaintyJson(const CloudFacts& fixed, const pipeline::Registration& regi
   json["axis_y"] = vectorJson((back * uncertainty.axes.col(1)).eval());
   json["expected_rms_m"] = number(uncertainty.expected_rms);
   json["systematic_rms_m"] = number(uncertainty.systematic_rms);
+  json["scatter_rms_m"] = number(uncertainty.scatter_rms);
   json["local_rms_m"] = number(uncertainty.local_rms);
   return json;
 }
