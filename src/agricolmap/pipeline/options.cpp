@@ -152,6 +152,7 @@ constexpr std::array kNeeds = {
     Need{"dense.soil.margin", followsSoil, "dense.soil.follow = true"},
     Need{"dense.soil.reach", followsSoil, "dense.soil.follow = true"},
     Need{"dense.soil.share", followsSoil, "dense.soil.follow = true"},
+    Need{"dense.soil.agree", followsSoil, "dense.soil.follow = true"},
     Need{"dense.soil.clear", followsSoil, "dense.soil.follow = true"},
 };
 

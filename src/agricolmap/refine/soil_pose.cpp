@@ -11,10 +11,8 @@
 namespace agricolmap::refine {
 
 void listOptions(OptionTable& table, SoilPoseOptions& options) {
-  table
-      .flag("follow", options.follow,
-            "end where bare soil between the plants lies upon itself, where both maps show it")
-      .basic();
+  table.flag("follow", options.follow,
+             "end where bare soil between the plants lies upon itself, where both maps show it");
   table.number("wave", options.wave, 0.05, 2.0, "m",
                "of soil, brightness is compared up to this wavelength");
   table.number("bare", options.bare, 0.0, 1.0, "",
@@ -24,6 +22,8 @@ void listOptions(OptionTable& table, SoilPoseOptions& options) {
                "how far around the plants' pose the soil's is looked for");
   table.number("share", options.share, 0.0, 1.0, "",
                "of the strip must be bare soil in both maps, or it is not followed");
+  table.number("agree", options.agree, 0.0, 1.0, "",
+               "correlation of the soil of both maps, below which it is not followed");
   table.number("clear", options.clear, 3.0, 1000.0, "deviations",
                "how far it must stand out among other shifts");
 }
@@ -169,8 +169,9 @@ SoilWitness askSoil(const map::GridMap& fixed, const map::GridMap& moving,
   witness.share = none.cells * step * factor * factor / static_cast<double>(seen);
   witness.peak = contrast(peak.score);
   witness.at_plants = contrast(none.score);
-  if (witness.share < options.share || witness.peak < options.clear ||
-      witness.peak < contrast(elsewhere.highest) + kLead) {
+  witness.correlation = peak.score / std::sqrt(peak.cells);
+  if (witness.share < options.share || witness.correlation < options.agree ||
+      witness.peak < options.clear || witness.peak < contrast(elsewhere.highest) + kLead) {
     return witness;
   }
   DenseRefineOptions dense;

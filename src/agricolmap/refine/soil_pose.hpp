@@ -20,6 +20,7 @@ struct SoilPoseOptions {
   double margin = 0.04;  ///< how far from a plant it begins [m]
   double reach = 0.24;   ///< how far plants may have leant [m]
   double share = 0.07;   ///< of the strip must be bare in both maps
+  double agree = 0.42;   ///< correlation of the soil from which on more than shadows is shared
   double clear = 6.0;    ///< deviations above chance from which on its place is believed
 };
 void listOptions(OptionTable& table, SoilPoseOptions& options);
@@ -30,6 +31,7 @@ struct SoilWitness {
   /// highest within reach, and where the plants lie upon one another.
   double peak = 0.0;
   double at_plants = 0.0;
+  double correlation = 0.0;             ///< at the peak
   std::optional<Eigen::Affine2d> pose;  ///< the moving map's by the soil; nothing unless clear
 };
 

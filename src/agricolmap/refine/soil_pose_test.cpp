@@ -58,6 +58,7 @@ TEST(SoilPoseTest, SoilThatWasTilledOrIsHiddenSaysNothing) {
   EXPECT_FALSE(soil.pose);
   const TestScene scene = leaning(kLean);
   EXPECT_FALSE(askSoil(scene.fixed, scene.moving, scene.pose, 1, {.share = 0.9}).pose);
+  EXPECT_FALSE(askSoil(scene.fixed, scene.moving, scene.pose, 1, {.agree = 0.99}).pose);
   EXPECT_FALSE(askSoil(scene.fixed, scene.moving, scene.pose, 1, {.reach = 0.05}).pose);
   // Off the map nothing is shared.
   const SoilWitness off =
