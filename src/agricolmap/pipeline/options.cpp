@@ -71,6 +71,9 @@ bool refinesDensely(const RegistrationOptions& options) {
 bool isDefaultChain(const RegistrationOptions& options) {
   return correlates(options) && refinesDensely(options);
 }
+bool followsSoil(const RegistrationOptions& options) {
+  return refinesDensely(options) && options.dense.soil.follow;
+}
 bool followsBends(const RegistrationOptions& options) {
   return options.deform == DeformKind::kPath && options.refine == RefineKind::kDense;
 }
@@ -144,6 +147,13 @@ constexpr std::array kNeeds = {
          "hidden.fill = true"},
     Need{"dense.hop", [](const RegistrationOptions& o) { return o.dense.hops > 0; },
          "dense.hops of 1 or more"},
+    Need{"dense.soil.wave", followsSoil, "dense.soil.follow = true"},
+    Need{"dense.soil.bare", followsSoil, "dense.soil.follow = true"},
+    Need{"dense.soil.margin", followsSoil, "dense.soil.follow = true"},
+    Need{"dense.soil.reach", followsSoil, "dense.soil.follow = true"},
+    Need{"dense.soil.share", followsSoil, "dense.soil.follow = true"},
+    Need{"dense.soil.agree", followsSoil, "dense.soil.follow = true"},
+    Need{"dense.soil.clear", followsSoil, "dense.soil.follow = true"},
 };
 
 }  // namespace

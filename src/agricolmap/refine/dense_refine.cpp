@@ -24,6 +24,7 @@ void listOptions(OptionTable& table, DenseRefineOptions& options) {
   table.integer("hops", options.hops, 0, 100, "",
                 "rounds of starting again beside the best, while that helps");
   table.number("hop", options.hop, 0.1, 10.0, "cells", "how far beside it");
+  table.group("soil", options.soil);
 }
 
 namespace {

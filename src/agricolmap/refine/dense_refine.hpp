@@ -8,6 +8,7 @@
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/refine/soil_pose.hpp"
 
 namespace agricolmap::refine {
 
@@ -19,6 +20,7 @@ struct DenseRefineOptions {
   double max_move = 4.0;       ///< a level may move a corner by this many cells at most
   int hops = 8;      ///< rounds of looking into neighbouring basins at most, see basins.hpp
   double hop = 1.0;  ///< how far they are looked for [cells]
+  SoilPoseOptions soil;
 };
 void listOptions(OptionTable& table, DenseRefineOptions& options);
 

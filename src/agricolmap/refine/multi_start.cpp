@@ -18,6 +18,8 @@ constexpr std::array<int, 3> kFineFactors = {3, 2, 1};
 constexpr int kBasinFactor = 2;
 /// Finer cells must have at least this share of the coarser ones' overlap.
 constexpr double kLeastFinerOverlap = 0.5;
+/// Of the fixed map around what is compared of the soil [m].
+constexpr double kSoilRim = 0.5;
 
 /// One level for all poses; those that do not hold are left out.
 std::vector<RefinedPose> refineLevel(const PairSignals& signals, int factor,
@@ -36,6 +38,17 @@ std::vector<RefinedPose> refineLevel(const PairSignals& signals, int factor,
                     poses[i].start, factor});
   }
   return held;
+}
+
+/// From what the plants say to what the soil does.
+void followSoil(const PairSignals& signals, const SoilPoseOptions& options, RefinedPose& best) {
+  const map::SignalTerm term = signals.moving().options().term;
+  const bool bright = term == map::SignalTerm::kAll || term == map::SignalTerm::kRgb;
+  if (!options.follow || !bright || best.factor == 0) return;
+  const double rim = options.reach + 2.0 * options.wave + kSoilRim;
+  best.soil = askSoil(signals.fixedUnder(best.pose, rim), signals.moving().grid(), best.pose,
+                      best.factor, options);
+  if (best.soil->pose) best.pose = *best.soil->pose;
 }
 
 }  // namespace
@@ -79,6 +92,7 @@ RefinedPose refineFinely(const PairSignals& signals, const RefinedPose& start,
     best.overlap = finer.overlap;
     best.factor = factor;
   }
+  followSoil(signals, options.soil, best);
   return best;
 }
 

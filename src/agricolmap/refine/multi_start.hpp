@@ -18,6 +18,7 @@ struct RefinedPose {
   double overlap = 0.0;       ///< share of the moving map's cells with a fixed cell to compare with
   std::size_t start = 0;      ///< index of the start that it was refined from
   int factor = 0;             ///< grid cells a cell at the finest level reached; 0: not on maps
+  std::optional<SoilWitness> soil;  ///< of the finest level, where it was asked
 };
 
 struct RankedPoses {
@@ -32,7 +33,8 @@ RankedPoses refineStarts(const PairSignals& signals, std::span<const Eigen::Affi
 
 /// On through the cells finer than the ranking level, there also from beside the result
 /// (`basins.hpp`). What the finest cells cannot follow (a map with fewer points than cells has
-/// hardly two seen side by side) stays as the coarser ones left it.
+/// hardly two seen side by side) stays as the coarser ones left it. Where bare soil shows clearly
+/// where it lies, the result is its pose.
 RefinedPose refineFinely(const PairSignals& signals, const RefinedPose& start,
                          const DenseRefineOptions& options);
 
