@@ -53,6 +53,9 @@ constexpr double kSameHeight = 0.05;
 /// Beside a plane that is too steep for a field, one under a canopy needs so many cells of those of
 /// the steep one: a strip on its edge stands on a handful, which may well be level.
 constexpr double kCellsBesideSteep = 0.5;
+/// A plane that is steeper than a better supported one by more than this cuts through the crop and
+/// rests on stray points [rad]: ground and canopy are all but parallel.
+constexpr double kAslant = 0.05;
 
 /// Points spread over the cloud, in the guess frame: one of every `stride`, but not always the
 /// same one, which in a cloud in raster order may be that of the same columns in every row.
@@ -196,6 +199,12 @@ Levelling levelUnderCanopy(const Levelling& found, const LevelPoints& points,
   std::erase_if(planes, [&](const UnderCanopy& plane) {
     const double cells = plane.share * static_cast<double>(plane.levelling.cells);
     return plane.share < kLeastSupport || cells < fewest;
+  });
+  const std::vector<UnderCanopy> all = planes;
+  std::erase_if(planes, [&](const UnderCanopy& plane) {
+    return std::any_of(all.begin(), all.end(), [&](const UnderCanopy& other) {
+      return other.share > plane.share && other.levelling.tilt < plane.levelling.tilt - kAslant;
+    });
   });
   double highest = -std::numeric_limits<double>::infinity();
   for (const UnderCanopy& plane : planes) highest = std::max(highest, plane.height);

@@ -139,6 +139,27 @@ TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
 }
 
 // A cloud from rasters: every fifth column is a row of plants, and one point in five is looked at.
+// As stereo makes them in the shade of tall plants: the lowest plane that cells support is of these.
+TEST(Level, StrayPointsBelowTheGroundDoNotTiltIt) {
+  Random random(11);
+  Cloud cloud;
+  cloud.name = "maize";
+  for (int i = 0; i < 40000; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.5), random.normal(0.008));
+    const double leaves = 0.3 + 0.6 * std::abs(std::sin(3.0 * p.x()) * std::cos(5.0 * p.y()));
+    if (random.chance(0.95)) p.z() += random.uniform(leaves, 2.0);
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  for (double x = 0.25; x < 10.0; x += 0.5) {
+    for (double y = 0.25; y < 1.5; y += 0.5) {
+      cloud.xyz.emplace_back(Eigen::Vector3d(x, y, -0.6 + 0.32 * y).cast<float>());
+    }
+  }
+  const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
+  EXPECT_LT(degrees(level.tilt), 1.0);
+  EXPECT_TRUE(level.under_canopy);
+}
+
 TEST(Level, LooksAtAllColumnsOfACloudInRasterOrder) {
   Random random(11);
   Cloud cloud;
