@@ -355,6 +355,7 @@ GridMap croppedMap(const GridMap& map, const Box2& window) {
   cut(map.exg, part.exg);
   cut(map.colour, part.colour);
   part.points = map.points;
+  part.soil_below = map.soil_below;
   part.filled = static_cast<std::size_t>(
       std::count_if(part.weight.begin(), part.weight.end(), [](float w) { return w > 0.0F; }));
   return part;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <limits>
+#include <optional>
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/core/point_stream.hpp"
@@ -45,6 +46,9 @@ struct GridMap {
   std::size_t filled = 0;  ///< cells that are not empty
   /// Robust deviation of the ground from height 0 where the cloud shows it [m]; infinite: unknown.
   double ground_deviation = std::numeric_limits<double>::infinity();
+  /// Excess Green below which a cell is soil; nothing unless this map and the one that it is
+  /// compared with both tell it from plants (`tellSoil`).
+  std::optional<float> soil_below;
 
   bool valid(int row, int col) const { return weight(row, col) > 0.0F; }
   bool valid(std::size_t i) const { return weight[i] > 0.0F; }

@@ -139,7 +139,8 @@ TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
 }
 
 // A cloud from rasters: every fifth column is a row of plants, and one point in five is looked at.
-// As stereo makes them in the shade of tall plants: the lowest plane that cells support is of these.
+// As stereo makes them in the shade of tall plants: the lowest plane that cells support is of
+// these.
 TEST(Level, StrayPointsBelowTheGroundDoNotTiltIt) {
   Random random(11);
   Cloud cloud;

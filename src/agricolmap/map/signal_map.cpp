@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/map/soil_texture.hpp"
@@ -104,8 +105,10 @@ Coarse averageCells(const GridMap& map, int factor, SignalTerm term) {
   const int cols = coarse.frame.cols;
   coarse.weight = Raster<float>(rows, cols);
   for (auto& channel : coarse.channel) channel = Raster<float>(rows, cols);
-  const std::optional<Raster<float>> texture =
-      uses(term, kLuminanceChannel) ? soilTexture(map) : std::nullopt;
+  std::optional<Raster<float>> texture;
+  if (map.soil_below && uses(term, kLuminanceChannel)) {
+    texture = soilTexture(map, *map.soil_below);
+  }
   const float share = 1.0F / static_cast<float>(factor * factor);
   parallelFor(static_cast<std::size_t>(rows), [&](std::size_t row) {
     const int r = static_cast<int>(row);

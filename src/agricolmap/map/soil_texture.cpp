@@ -22,14 +22,22 @@ Raster<float> localMean(const Raster<float>& value, const Raster<float>& weight)
 
 }  // namespace
 
-std::optional<Raster<float>> soilTexture(const GridMap& map) {
-  const VegetationThreshold plants = vegetationThreshold(map, {});
-  if (plants.status != VegetationStatus::kOk) return std::nullopt;
-  const auto greenest = static_cast<float>(plants.threshold);
+void tellSoil(GridMap& fixed, GridMap& moving) {
+  const VegetationThreshold there = vegetationThreshold(fixed, {});
+  const VegetationThreshold here = vegetationThreshold(moving, {});
+  const bool told = there.status == VegetationStatus::kOk && here.status == VegetationStatus::kOk;
+  const auto below = [&](const VegetationThreshold& plants) {
+    return told ? std::optional(static_cast<float>(plants.threshold)) : std::nullopt;
+  };
+  fixed.soil_below = below(there);
+  moving.soil_below = below(here);
+}
+
+Raster<float> soilTexture(const GridMap& map, float soil_below) {
   Raster<float> soil(map.frame.rows, map.frame.cols);
   Raster<float> texture(map.frame.rows, map.frame.cols);
   for (std::size_t i = 0; i < soil.size(); ++i) {
-    if (!map.valid(i) || map.exg[i] >= greenest) continue;
+    if (!map.valid(i) || map.exg[i] >= soil_below) continue;
     soil[i] = 1.0F;
     texture[i] = luminance(map.colour[i]);
   }

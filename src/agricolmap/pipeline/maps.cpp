@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "agricolmap/map/soil_texture.hpp"
+
 namespace agricolmap::pipeline {
 namespace {
 
@@ -59,7 +61,9 @@ PairMaps mapPair(const FixedCloud& fixed, const Cloud& moving, const Eigen::Affi
   monitor.run(Stage::kGrid, [&] {
     maps.grid = cellsFor(maps.frames, options);
     gridFixed(fixed.points(), options, maps);
-    if (!options.prior.scale_unknown) gridMoving(moving, maps);
+    if (options.prior.scale_unknown) return;
+    gridMoving(moving, maps);
+    map::tellSoil(maps.fixed, maps.moving);
   });
   return maps;
 }
@@ -78,6 +82,7 @@ map::GridMap straightMap(const Cloud& moving, const pieces::Bend& bend, const Pa
     map::GridMap straight =
         map::makeGridMap(bent, maps.frames.levelled_from_moving, box, maps.grid);
     straight.ground_deviation = maps.moving.ground_deviation;
+    straight.soil_below = maps.moving.soil_below;
     return straight;
   });
 }
