@@ -40,11 +40,7 @@ std::vector<RefinedPose> refineLevel(const PairSignals& signals, int factor,
   return held;
 }
 
-/// The soil contradicts the plants where it stands out less at their place by so many deviations.
-constexpr double kContradicted = 1.0;
-
-/// To what plants and soil say together: the mean, which has less of the errors of each. Where the
-/// soil contradicts the plants it is right alone, for it neither grows nor leans.
+/// From what the plants say to what plants and soil say together.
 void followSoil(const PairSignals& signals, const SoilPoseOptions& options, RefinedPose& best) {
   const map::SignalTerm term = signals.moving().options().term;
   const bool bright = term == map::SignalTerm::kAll || term == map::SignalTerm::kRgb;
@@ -52,10 +48,7 @@ void followSoil(const PairSignals& signals, const SoilPoseOptions& options, Refi
   const double rim = options.reach + 2.0 * options.wave + kSoilRim;
   best.soil = askSoil(signals.fixedUnder(best.pose, rim), signals.moving().grid(), best.pose,
                       best.factor, options);
-  if (!best.soil->pose) return;
-  const bool contradicts = best.soil->at_plants < best.soil->peak - kContradicted;
-  const double share = contradicts ? 1.0 : 0.5;
-  best.pose.affine() += share * (best.soil->pose->affine() - best.pose.affine());
+  best.pose = heardTogether(best.pose, *best.soil);
 }
 
 }  // namespace

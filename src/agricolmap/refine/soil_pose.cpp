@@ -36,6 +36,8 @@ constexpr double kLead = 2.0;
 constexpr double kApart = 0.08;
 constexpr float kSeen = 0.5F;  // share of a cell
 constexpr std::size_t kLeastCells = 100;
+/// The soil contradicts the plants where it stands out less at their place by so many deviations.
+constexpr double kContradicted = 1.0;
 /// So many cells tell the peak as well as more do.
 constexpr std::size_t kMostCells = 4000;
 /// The plants' pose may be stretched by centimetres at the strip's corners [cells].
@@ -180,6 +182,14 @@ SoilWitness askSoil(const map::GridMap& fixed, const map::GridMap& moving,
       refineDense(there, here, Eigen::Translation2d(peak.shift) * plants, dense);
   if (refined.status == RefineStatus::kConverged) witness.pose = refined.fixed_from_moving;
   return witness;
+}
+
+Eigen::Affine2d heardTogether(const Eigen::Affine2d& plants, const SoilWitness& soil) {
+  if (!soil.pose) return plants;
+  const double share = soil.at_plants < soil.peak - kContradicted ? 1.0 : 0.5;
+  Eigen::Affine2d together = plants;
+  together.affine() += share * (soil.pose->affine() - plants.affine());
+  return together;
 }
 
 }  // namespace agricolmap::refine

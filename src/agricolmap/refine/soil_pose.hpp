@@ -41,4 +41,9 @@ struct SoilWitness {
 SoilWitness askSoil(const map::GridMap& fixed, const map::GridMap& moving,
                     const Eigen::Affine2d& plants, int factor, const SoilPoseOptions& options);
 
+/// What plants and soil say together: the mean of their poses, which has less of the errors of
+/// each; where the soil contradicts the plants its own, for it neither grows nor leans; the plants'
+/// where the soil says nothing.
+Eigen::Affine2d heardTogether(const Eigen::Affine2d& plants, const SoilWitness& soil);
+
 }  // namespace agricolmap::refine

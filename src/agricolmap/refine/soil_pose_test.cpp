@@ -84,5 +84,15 @@ TEST(SoilPoseTest, TheRefinementEndsThereUnlessToldNotTo) {
   EXPECT_LT(ends({.term = map::SignalTerm::kExgHeight}, true).norm(), 0.015);
 }
 
+TEST(SoilPose, OfPlantsAndSoilThatAgreeTheMeanCountsAndElseTheSoil) {
+  const Eigen::Affine2d plants(Eigen::Translation2d(1.0, 2.0));
+  SoilWitness soil{.share = 0.3, .peak = 15.0, .at_plants = 15.0, .correlation = 0.6, .pose = {}};
+  EXPECT_TRUE(heardTogether(plants, soil).isApprox(plants)) << "it was not clear";
+  soil.pose = Eigen::Affine2d(Eigen::Translation2d(1.01, 2.0));
+  EXPECT_NEAR(heardTogether(plants, soil).translation().x(), 1.005, 1e-12);
+  soil.at_plants = 9.0;
+  EXPECT_NEAR(heardTogether(plants, soil).translation().x(), 1.01, 1e-12);
+}
+
 }  // namespace
 }  // namespace agricolmap::refine
