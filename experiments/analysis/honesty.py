@@ -76,7 +76,8 @@ def _without_common(rows):
         x, y = rest[0] / sx, rest[1] / sy
         distance2 = (x**2 - 2 * rho * x * y + y**2) / (1 - rho**2)
         mean = 100 * error.mean(axis=0)
-        lines.append({"case": case, "strips": len(of), "common x, y cm": f"{mean[0]:.1f}, {mean[1]:.1f}",
+        lines.append({"case": case, "strips": len(of),
+                      "common x, y cm": f"{mean[0]:.1f}, {mean[1]:.1f}",
                       "inside": int((chi2.cdf(distance2, 2) <= 0.9).sum()),
                       "left over cm RMS": number(np.sqrt((rest**2).sum(axis=0).mean()), 1, 100)})
     if not lines:

@@ -44,6 +44,18 @@ class HonestyTest(unittest.TestCase):
         self.assertEqual(line["height in 90%"][:3], "0.0")
         self.assertEqual((line["answers"], line["ECE"]), (4, "0.100"))
 
+    def test_what_all_strips_of_two_flights_share_is_taken_off(self):
+        # 3 cm of georeference and 1 cm of our own, where 8 mm each way are stated.
+        rows_of = _table([
+            _dates(seed=seed, centre_error_x=0.03 + x, centre_error_y=y, centre_deviation_x=0.008,
+                   centre_deviation_y=0.008, centre_correlation=0)
+            for seed, (x, y) in enumerate([(0.01, 0), (-0.01, 0), (0, 0.01), (0, -0.01), (0, 0)])])
+        table = honesty._without_common(rows_of)
+        self.assertEqual(table["common x, y cm"][0], "3.0, 0.0")
+        self.assertEqual(table["left over cm RMS"][0], "1.0")
+        self.assertEqual(table["inside the 90 % ellipse"][0][:5], "100.0")
+        self.assertIsNone(honesty._without_common(rows_of[:4]))
+
     def test_prints_kinds_cases_and_statements(self):
         text = honesty.text(_table([_dates(), _dates(suite="mirrored", negative=1, rms="",
                                                      rms_horizontal="")]))
