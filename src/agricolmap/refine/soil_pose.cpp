@@ -167,7 +167,8 @@ SoilWitness askSoil(const map::GridMap& fixed, const map::GridMap& moving,
   };
   std::size_t seen = 0;
   for (std::size_t i = 0; i < moving.weight.size(); ++i) seen += moving.valid(i) ? 1 : 0;
-  const auto step = static_cast<double>(1 + cells.size() / kMostCells);
+  const std::size_t every = 1 + cells.size() / kMostCells;
+  const auto step = static_cast<double>(every);
   witness.share = none.cells * step * factor * factor / static_cast<double>(seen);
   witness.peak = contrast(peak.score);
   witness.at_plants = contrast(none.score);
