@@ -108,20 +108,22 @@ double expectedOver(const std::vector<BlockShift>& strip, const std::vector<Bloc
   return std::sqrt(sum / static_cast<double>(strip.size()));
 }
 
-/// What the blocks' residuals of a fit, one each, have in common with those of their neighbours
-/// [m²]: deformation is smooth, and what plants did or noise moved of one block says nothing of the
-/// next. `hat(i, j)`: how far the fit alone makes residuals i and j alike, of a `variance` per
-/// axis.
-template <typename Hat>
+/// What the blocks' residuals of `pose`'s parameters, one each and of a `variance` per axis, have
+/// in common with those of their neighbours [m²]: deformation is smooth, and what plants did or
+/// noise moved of one block says nothing of the next. `inverse`: of the fit's normal matrix.
 double sharedByNeighbours(const std::vector<BlockShift>& blocks,
                           const std::vector<Eigen::Vector2d>& residuals, double variance,
-                          double reach, const Hat& hat) {
+                          double reach, const PoseUncertainty& pose, const Square& inverse) {
   double sum = 0.0;
   double pairs = 0.0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     for (std::size_t j = i + 1; j < blocks.size(); ++j) {
       if ((blocks[i].place - blocks[j].place).norm() > reach) continue;
-      sum += residuals[i].dot(residuals[j]) + variance * hat(i, j);
+      // The fit alone makes residuals unlike one another by this.
+      const double hat =
+          (pose.jacobian(blocks[i].place) * inverse * pose.jacobian(blocks[j].place).transpose())
+              .trace();
+      sum += residuals[i].dot(residuals[j]) + variance * hat;
       pairs += 1.0;
     }
   }
@@ -174,12 +176,8 @@ std::optional<PoseUncertainty> estimateUncertainty(
   const Square inverse = solver.solve(Square::Identity());
   const double reach =
       kNeighbours * evidence.block_side * std::sqrt(std::abs(pose.linear().determinant()));
-  result.local_rms = std::sqrt(
-      sharedByNeighbours(blocks, residuals, variance, reach, [&](std::size_t i, std::size_t j) {
-        return (result.jacobian(blocks[i].place) * inverse *
-                result.jacobian(blocks[j].place).transpose())
-            .trace();
-      }));
+  result.local_rms =
+      std::sqrt(sharedByNeighbours(blocks, residuals, variance, reach, result, inverse));
   // `fit` is what the pose still misses of the blocks' own best affine: counted as well.
   double offset2 = 0.0;
   for (const BlockShift& block : blocks) {
