@@ -18,7 +18,8 @@ struct RefinedPose {
   double overlap = 0.0;       ///< share of the moving map's cells with a fixed cell to compare with
   std::size_t start = 0;      ///< index of the start that it was refined from
   int factor = 0;             ///< grid cells a cell at the finest level reached; 0: not on maps
-  std::optional<SoilWitness> soil;  ///< of the finest level, where it was asked
+  /// Of the finest level, where it was asked.
+  std::optional<SoilWitness> soil = std::nullopt;
 };
 
 struct RankedPoses {
