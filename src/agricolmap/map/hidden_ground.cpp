@@ -31,7 +31,21 @@ constexpr float kLeastBare = 0.05F;   // share of the cells around
 constexpr int kReach = 2;              // cells
 constexpr float kLeastFilled = 0.25F;  // of the cells within reach
 
-/// 1 where the map shows bare ground: not green, or, without colours, not high.
+Raster<float> luminanceOf(const GridMap& map) {
+  Raster<float> bright(map.frame.rows, map.frame.cols);
+  for (std::size_t i = 0; i < bright.size(); ++i) bright[i] = luminance(map.colour[i]);
+  return bright;
+}
+
+/// Grey: of a signal's colours only the luminance is read.
+Rgb greyOf(float bright) {
+  const auto level =
+      static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(bright, 0.0F, 1.0F)));
+  return {level, level, level};
+}
+
+}  // namespace
+
 Raster<float> bareGround(const GridMap& map, double share) {
   std::vector<float> exg, height;
   for (std::size_t i = 0; i < map.weight.size(); ++i) {
@@ -54,21 +68,6 @@ Raster<float> bareGround(const GridMap& map, double share) {
   }
   return bare;
 }
-
-Raster<float> luminanceOf(const GridMap& map) {
-  Raster<float> bright(map.frame.rows, map.frame.cols);
-  for (std::size_t i = 0; i < bright.size(); ++i) bright[i] = luminance(map.colour[i]);
-  return bright;
-}
-
-/// Grey: of a signal's colours only the luminance is read.
-Rgb greyOf(float bright) {
-  const auto level =
-      static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(bright, 0.0F, 1.0F)));
-  return {level, level, level};
-}
-
-}  // namespace
 
 GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options) {
   GridMap filled = map;

@@ -17,6 +17,10 @@ struct HiddenGroundOptions {
 };
 void listOptions(OptionTable& table, HiddenGroundOptions& options);
 
+/// 1 where the map shows bare ground: least green by `share` of the way from the map's tenth to its
+/// nine tenths, or, without colours, least high; else 0.
+Raster<float> bareGround(const GridMap& map, double share);
+
 /// A copy of `map` in which the part of each cell that has no points, for its share of the usual
 /// number of points around, has Excess Green and height of the bare ground around. Cells far from
 /// all points stay empty, as do those with no bare ground around. Where filled cells hold fewer
@@ -24,9 +28,9 @@ void listOptions(OptionTable& table, HiddenGroundOptions& options);
 /// was thinned to a point per voxel of a cell's size does not tell what was seen. Colours stay,
 /// too.
 ///
-/// Bare is what is least green by `HiddenGroundOptions::bare` of the way from the map's tenth to
-/// its nine tenths. Under a canopy that closes that is its shade, and little changes there: soybean
-/// came out as well without the fill, tall maize better (docs/accuracy.md).
+/// Bare is `bareGround` by `HiddenGroundOptions::bare`. Under a canopy that closes that is its
+/// shade, and little changes there: soybean came out as well without the fill, tall maize better
+/// (docs/accuracy.md).
 GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options);
 
 }  // namespace agricolmap::map

@@ -30,6 +30,21 @@ Cloud makeStrip(double roll_deg, double pitch_deg, double height) {
   return cloud;
 }
 
+/// Points of a strip, drawn with `seed`, of which `rise(point, random)` says how high over the
+/// ground each lies [m].
+template <typename Rise>
+Cloud cropStrip(int seed, int count, const Rise& rise) {
+  Random random(static_cast<std::uint64_t>(seed));
+  Cloud cloud;
+  cloud.name = "crop";
+  for (int i = 0; i < count; ++i) {
+    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+    p.z() += rise(p, random);
+    cloud.xyz.push_back(p.cast<float>());
+  }
+  return cloud;
+}
+
 TEST(Level, FindsTheGroundUnderPlantsAndFlyingPoints) {
   for (const double roll : {0.0, 3.0, -10.0, 30.0}) {
     const Cloud cloud = makeStrip(roll, 2.0, 5.0);
@@ -48,14 +63,9 @@ TEST(Level, FindsTheGroundUnderPlantsAndFlyingPoints) {
 
 // As thick as it is wide: the plane through all its points stands on edge.
 TEST(Level, ANarrowStripOfATallCropStandsUpright) {
-  Random random(8);
-  Cloud cloud;
-  cloud.name = "maize";
-  for (int i = 0; i < 50000; ++i) {
-    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
-    if (random.chance(0.7)) p.z() += random.chance(0.5) ? 0.2 : 2.2;
-    cloud.xyz.push_back(p.cast<float>());
-  }
+  const Cloud cloud = cropStrip(8, 50000, [](const Eigen::Vector3d&, Random& random) {
+    return random.chance(0.7) ? (random.chance(0.5) ? 0.2 : 2.2) : 0.0;
+  });
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_LT(level.tilt, 0.02);
 }
@@ -104,14 +114,9 @@ TEST(Level, AsksForTheUnitsOfACloudThatSeemsSparse) {
 // Under a canopy that nearly closes one point in twenty is of the ground, and the lower leaves of a
 // crop that grows better on one side make a plane of their own.
 TEST(Level, FindsTheGroundUnderATallCropThatNearlyCloses) {
-  Random random(9);
-  Cloud cloud;
-  cloud.name = "maize";
-  for (int i = 0; i < 100000; ++i) {
-    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
-    if (random.chance(0.95)) p.z() += (0.4 + 0.3 * p.y()) * random.uniform(0.5, 2.0);
-    cloud.xyz.push_back(p.cast<float>());
-  }
+  const Cloud cloud = cropStrip(9, 100000, [](const Eigen::Vector3d& p, Random& random) {
+    return random.chance(0.95) ? (0.4 + 0.3 * p.y()) * random.uniform(0.5, 2.0) : 0.0;
+  });
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_LT(level.tilt, 0.02);
   EXPECT_LT(level.roughness, 0.03);
@@ -119,17 +124,12 @@ TEST(Level, FindsTheGroundUnderATallCropThatNearlyCloses) {
 
 // Four cells of five show canopy only, which is higher on one side; a few points lie below ground.
 TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
-  Random random(10);
-  Cloud cloud;
-  cloud.name = "soybean";
-  for (int i = 0; i < 100000; ++i) {
-    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.2), random.normal(0.01));
+  const Cloud cloud = cropStrip(10, 100000, [](const Eigen::Vector3d& p, Random& random) {
     const bool hole =
         std::fmod(p.x(), 0.5) < 0.1 && std::fmod(0.37 * std::floor(p.x() / 0.5), 1) < 0.4;
-    if (!hole) p.z() += 0.3 + 0.1 * p.y() + random.uniform(0.0, 0.2);
-    if (random.chance(1e-4)) p.z() -= 0.3;
-    cloud.xyz.push_back(p.cast<float>());
-  }
+    const double canopy = hole ? 0.0 : 0.3 + 0.1 * p.y() + random.uniform(0.0, 0.2);
+    return canopy - (random.chance(1e-4) ? 0.3 : 0.0);
+  });
   const Levelling level = levelCloud(cloud, Eigen::Affine3d::Identity(), {});
   EXPECT_TRUE(level.under_canopy);
   EXPECT_LT(level.support, 1.0);
@@ -138,19 +138,13 @@ TEST(Level, FindsTheGroundThatAClosedCanopyShowsInAFewCells) {
   EXPECT_NEAR((level.levelled_from_guess * Eigen::Vector3d(5.0, 1.1, 0.0)).z(), 0.0, 0.03);
 }
 
-// A cloud from rasters: every fifth column is a row of plants, and one point in five is looked at.
 // As stereo makes them in the shade of tall plants: the lowest plane that cells support is of
 // these.
 TEST(Level, StrayPointsBelowTheGroundDoNotTiltIt) {
-  Random random(11);
-  Cloud cloud;
-  cloud.name = "maize";
-  for (int i = 0; i < 40000; ++i) {
-    Eigen::Vector3d p(random.uniform(0, 10), random.uniform(0, 2.5), random.normal(0.008));
+  Cloud cloud = cropStrip(11, 40000, [](const Eigen::Vector3d& p, Random& random) {
     const double leaves = 0.3 + 0.6 * std::abs(std::sin(3.0 * p.x()) * std::cos(5.0 * p.y()));
-    if (random.chance(0.95)) p.z() += random.uniform(leaves, 2.0);
-    cloud.xyz.push_back(p.cast<float>());
-  }
+    return random.chance(0.95) ? random.uniform(leaves, 2.0) : 0.0;
+  });
   for (double x = 0.25; x < 10.0; x += 0.5) {
     for (double y = 0.25; y < 1.5; y += 0.5) {
       cloud.xyz.emplace_back(Eigen::Vector3d(x, y, -0.6 + 0.32 * y).cast<float>());
@@ -161,6 +155,7 @@ TEST(Level, StrayPointsBelowTheGroundDoNotTiltIt) {
   EXPECT_TRUE(level.under_canopy);
 }
 
+// A cloud from rasters: every fifth column is a row of plants, and one point in five is looked at.
 TEST(Level, LooksAtAllColumnsOfACloudInRasterOrder) {
   Random random(11);
   Cloud cloud;

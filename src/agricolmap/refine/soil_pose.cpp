@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/core/robust.hpp"
+#include "agricolmap/map/hidden_ground.hpp"
 #include "agricolmap/refine/dense_refine.hpp"
 
 namespace agricolmap::refine {
@@ -45,17 +45,11 @@ constexpr double kMaxMove = 8.0;
 
 /// What of `map` is bare soil; the cells of plants and those near to them are taken out.
 map::GridMap bareSoil(const map::GridMap& map, const SoilPoseOptions& options) {
-  std::vector<float> exg;
-  for (std::size_t i = 0; i < map.weight.size(); ++i) {
-    if (map.valid(i)) exg.push_back(map.exg[i]);
-  }
   map::GridMap soil = map;
-  if (exg.empty()) return soil;
-  const float low = quantile(exg, 0.1), high = quantile(exg, 0.9);
-  const float limit = low + static_cast<float>(options.bare) * (high - low);
+  const Raster<float> bare = map::bareGround(map, options.bare);
   Raster<float> plant(map.frame.rows, map.frame.cols);
   for (std::size_t i = 0; i < plant.size(); ++i) {
-    plant[i] = map.valid(i) && map.exg[i] >= limit ? 1.0F : 0.0F;
+    plant[i] = map.valid(i) && bare[i] == 0.0F ? 1.0F : 0.0F;
   }
   const Raster<float> all(map.frame.rows, map.frame.cols, 1.0F);
   const int margin = static_cast<int>(std::lround(options.margin / map.frame.cell));

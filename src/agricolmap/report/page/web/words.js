@@ -74,8 +74,8 @@ export function bendWords(report) {
   if (!bend) {
     const local = report.uncertainty?.local_rms_m;
     return known(local)
-      ? `No bend of the strip had to be followed; its parts differ by ${length(local)} among ` +
-        "themselves, which no single transformation undoes."
+      ? `No bend of the strip had to be followed; ${length(local)} of deformation remain, which no ` +
+        "single transformation undoes."
       : "No bend of the strip was followed.";
   }
   const slips = bend.slips.length;
