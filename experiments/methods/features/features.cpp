@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/map/box_mean.hpp"
 
 namespace agricolmap::experiments {
 
@@ -29,7 +29,7 @@ ExgImage exgImage(const map::GridMap& map) {
   const float middle = seen[seen.size() / 2];
   // From near cells where there are any, else from further ones.
   for (int radius = 2; radius <= 64; radius *= 2) {
-    const Raster<float> mean = map::weightedBoxMean(value, weight, radius);
+    const Raster<float> mean = map::BoxMean(weight, radius).of(value);
     Raster<float> grown = weight;
     for (std::size_t i = 0; i < mean.size(); ++i) {
       if (weight[i] > 0.0F || mean[i] == 0.0F) continue;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "agricolmap/core/robust.hpp"
-#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/map/box_mean.hpp"
 
 namespace agricolmap::map {
 
@@ -77,13 +77,14 @@ GridMap withHiddenGround(const GridMap& map, const HiddenGroundOptions& options)
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = map.valid(i) ? 1.0F : 0.0F;
   const Raster<float> all(map.frame.rows, map.frame.cols, 1.0F);
   const Raster<float> bare = bareGround(map, options.bare);
-  const Raster<float> bare_share = weightedBoxMean(bare, all, radius);
-  const Raster<float> soil = weightedBoxMean(map.exg, bare, radius);
-  const Raster<float> ground = weightedBoxMean(map.height, bare, radius);
+  const Raster<float> bare_share = BoxMean(all, radius).of(bare);
+  const BoxMean of_bare(bare, radius);
+  const Raster<float> soil = of_bare.of(map.exg);
+  const Raster<float> ground = of_bare.of(map.height);
   const Raster<float> bright = luminanceOf(map);
-  const Raster<float> soil_bright = weightedBoxMean(bright, bare, radius);
-  const Raster<float> usual = weightedBoxMean(map.weight, seen, radius);
-  const Raster<float> around = weightedBoxMean(seen, all, kReach);
+  const Raster<float> soil_bright = of_bare.of(bright);
+  const Raster<float> usual = BoxMean(seen, radius).of(map.weight);
+  const Raster<float> around = BoxMean(all, kReach).of(seen);
   const auto whole = static_cast<float>(options.whole);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (usual[i] < kLeastPoints || bare_share[i] < kLeastBare || around[i] < kLeastFilled) continue;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/map/box_mean.hpp"
 #include "agricolmap/map/soil_texture.hpp"
 
 namespace agricolmap::map {
@@ -20,53 +21,6 @@ void listOptions(OptionTable& table, SignalOptions& options) {
 }
 
 namespace {
-
-/// Means over (2·radius + 1) cells along rows, and along columns by being called on the transpose.
-void boxSumRows(const Raster<float>& in, int radius, Raster<float>& out) {
-  parallelFor(static_cast<std::size_t>(in.rows()), [&](std::size_t r) {
-    const float* source = in.row(static_cast<int>(r));
-    float* target = out.row(static_cast<int>(r));
-    const int cols = in.cols();
-    double sum = 0.0;
-    for (int c = 0; c < std::min(radius, cols); ++c) sum += static_cast<double>(source[c]);
-    for (int c = 0; c < cols; ++c) {
-      if (c + radius < cols) sum += static_cast<double>(source[c + radius]);
-      if (c - radius - 1 >= 0) sum -= static_cast<double>(source[c - radius - 1]);
-      target[c] = static_cast<float>(sum);
-    }
-  });
-}
-
-void boxSumCols(const Raster<float>& in, int radius, Raster<float>& out) {
-  constexpr int kStripe = 64;
-  const int cols = in.cols();
-  const int rows = in.rows();
-  const auto stripes = static_cast<std::size_t>((cols + kStripe - 1) / kStripe);
-  parallelFor(stripes, [&](std::size_t stripe) {
-    const int first = static_cast<int>(stripe) * kStripe;
-    const int count = std::min(kStripe, cols - first);
-    double sum[kStripe] = {};
-    const auto add = [&](int row, double sign) {
-      const float* source = in.row(row) + first;
-      for (int c = 0; c < count; ++c) sum[c] += sign * static_cast<double>(source[c]);
-    };
-    for (int r = 0; r < std::min(radius, rows); ++r) add(r, 1.0);
-    for (int r = 0; r < rows; ++r) {
-      if (r + radius < rows) add(r + radius, 1.0);
-      if (r - radius - 1 >= 0) add(r - radius - 1, -1.0);
-      float* target = out.row(r) + first;
-      for (int c = 0; c < count; ++c) target[c] = static_cast<float>(sum[c]);
-    }
-  });
-}
-
-Raster<float> boxSum(const Raster<float>& in, int radius) {
-  Raster<float> rows(in.rows(), in.cols());
-  Raster<float> both(in.rows(), in.cols());
-  boxSumRows(in, radius, rows);
-  boxSumCols(rows, radius, both);
-  return both;
-}
 
 /// Means of `factor × factor` fine cells; frame and weight first, then one value per channel.
 struct Coarse {
@@ -135,10 +89,10 @@ Coarse averageCells(const GridMap& map, int factor, SignalTerm term) {
 }
 
 /// Subtracts the local mean, divides by the deviation, cuts outliers; returns the deviation.
-double highPass(Raster<float>& value, const Raster<float>& weight, int radius, double clip) {
+double highPass(Raster<float>& value, const Raster<float>& weight, const BoxMean& box,
+                double clip) {
   // Two boxes make a smooth low-pass without the side lobes of one.
-  Raster<float> low = weightedBoxMean(value, weight, radius);
-  low = weightedBoxMean(low, weight, radius);
+  const Raster<float> low = box.of(box.of(value));
   constexpr std::size_t kChunk = 1U << 15;
   const Eigen::Array3d sums = parallelSum<Eigen::Array3d>(
       value.size(), kChunk, Eigen::Array3d::Zero(), [&](std::size_t begin, std::size_t end) {
@@ -168,17 +122,6 @@ double highPass(Raster<float>& value, const Raster<float>& weight, int radius, d
 
 }  // namespace
 
-Raster<float> weightedBoxMean(const Raster<float>& value, const Raster<float>& weight, int radius) {
-  Raster<float> product(value.rows(), value.cols());
-  for (std::size_t i = 0; i < value.size(); ++i) product[i] = value[i] * weight[i];
-  Raster<float> sum = boxSum(product, radius);
-  const Raster<float> norm = boxSum(weight, radius);
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    sum[i] = norm[i] > 1e-3F ? sum[i] / norm[i] : 0.0F;
-  }
-  return sum;
-}
-
 SignalMap makeSignalMap(const GridMap& map, int factor, const SignalOptions& options) {
   Coarse coarse = averageCells(map, factor, options.term);
   SignalMap signal;
@@ -186,10 +129,11 @@ SignalMap makeSignalMap(const GridMap& map, int factor, const SignalOptions& opt
   signal.weight = std::move(coarse.weight);
   const int radius =
       std::max(1, static_cast<int>(std::lround(0.5 * options.high_pass / signal.frame.cell)));
+  const BoxMean box(signal.weight, radius);
   for (int k = 0; k < kSignalChannels; ++k) {
     signal.channel[k] = std::move(coarse.channel[k]);
     if (uses(options.term, k)) {
-      signal.deviation[k] = highPass(signal.channel[k], signal.weight, radius, options.clip);
+      signal.deviation[k] = highPass(signal.channel[k], signal.weight, box, options.clip);
     }
     // The rounding of a flat cloud's heights is no relief.
     if (signal.deviation[k] < kFlat[k]) {

@@ -79,8 +79,4 @@ inline SignalSample sampleSignal(const SignalMap& map, const Eigen::Vector2d& po
   return sample;
 }
 
-/// Mean over a box of (2·radius + 1)² cells, weighted: what `weight` does not cover does not count.
-/// Cells with no weight within reach become 0.
-Raster<float> weightedBoxMean(const Raster<float>& value, const Raster<float>& weight, int radius);
-
 }  // namespace agricolmap::map

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/map/box_mean.hpp"
 #include "agricolmap/map/vegetation.hpp"
 
 namespace agricolmap::map {
@@ -15,10 +15,6 @@ constexpr int kRadius = 3;
 /// Where the soil varies less than this share of what it usually does (a hole that was filled, deep
 /// shadow) there is nothing but noise to enlarge.
 constexpr float kLeastShare = 0.25F;
-
-Raster<float> localMean(const Raster<float>& value, const Raster<float>& weight) {
-  return weightedBoxMean(weightedBoxMean(value, weight, kRadius), weight, kRadius);
-}
 
 }  // namespace
 
@@ -41,7 +37,8 @@ Raster<float> soilTexture(const GridMap& map, float soil_below) {
     soil[i] = 1.0F;
     texture[i] = luminance(map.colour[i]);
   }
-  const Raster<float> mean = localMean(texture, soil);
+  const BoxMean around(soil, kRadius);
+  const Raster<float> mean = around.of(around.of(texture));
   Raster<float> square(map.frame.rows, map.frame.cols);
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < soil.size(); ++i) {
@@ -52,7 +49,7 @@ Raster<float> soilTexture(const GridMap& map, float soil_below) {
   }
   const auto usual = static_cast<float>(std::sqrt(sum / std::max(1.0, count)));
   if (usual <= 0.0F) return texture;
-  const Raster<float> variance = localMean(square, soil);
+  const Raster<float> variance = around.of(around.of(square));
   for (std::size_t i = 0; i < soil.size(); ++i) {
     texture[i] /= std::max(kLeastShare * usual, std::sqrt(variance[i]));
   }

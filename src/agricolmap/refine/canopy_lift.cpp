@@ -7,7 +7,7 @@
 
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/robust.hpp"
-#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/map/box_mean.hpp"
 
 namespace agricolmap::refine {
 namespace {
@@ -39,7 +39,8 @@ struct Surface {
   Raster<float> weight;
 
   void blur(int passes) {
-    for (int pass = 0; pass < passes; ++pass) value = map::weightedBoxMean(value, weight, 1);
+    const map::BoxMean around(weight, 1);
+    for (int pass = 0; pass < passes; ++pass) value = around.of(value);
   }
 };
 
@@ -50,8 +51,8 @@ Surface canopyOf(const map::GridMap& moving, const GroundModel& ground) {
   Raster<float> seen(rows, cols);
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = moving.valid(i) ? 1.0F : 0.0F;
   const Raster<float> all(rows, cols, 1.0F);
-  const Raster<float> usual = map::weightedBoxMean(moving.weight, seen, radius);
-  const Raster<float> around = map::weightedBoxMean(seen, all, radius);
+  const Raster<float> usual = map::BoxMean(seen, radius).of(moving.weight);
+  const Raster<float> around = map::BoxMean(all, radius).of(seen);
   Surface canopy{Raster<float>(rows, cols), Raster<float>(rows, cols)};
   parallelFor(static_cast<std::size_t>(rows), [&](std::size_t row) {
     const int r = static_cast<int>(row);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/map/box_mean.hpp"
 #include "agricolmap/map/hidden_ground.hpp"
 #include "agricolmap/refine/dense_refine.hpp"
 
@@ -53,7 +54,7 @@ map::GridMap bareSoil(const map::GridMap& map, const SoilPoseOptions& options) {
   }
   const Raster<float> all(map.frame.rows, map.frame.cols, 1.0F);
   const int margin = static_cast<int>(std::lround(options.margin / map.frame.cell));
-  const Raster<float> near = map::weightedBoxMean(plant, all, margin);
+  const Raster<float> near = map::BoxMean(all, margin).of(plant);
   for (std::size_t i = 0; i < near.size(); ++i) {
     // Running sums leave a rounding of zero.
     if (near[i] > 1e-3F) soil.weight[i] = 0.0F;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "agricolmap/core/random.hpp"
-#include "agricolmap/map/signal_map.hpp"
+#include "agricolmap/map/box_mean.hpp"
 
 namespace agricolmap::refine {
 namespace {
@@ -185,7 +185,8 @@ map::GridMap cereal(int blur, double seen, bool fixed, std::uint64_t seed) {
   }
   const Raster<float> sharp = canopy;
   const Raster<float> all(map.frame.rows, map.frame.cols, 1.0F);
-  for (int pass = 0; pass < blur; ++pass) canopy = map::weightedBoxMean(canopy, all, 1);
+  const map::BoxMean around(all, 1);
+  for (int pass = 0; pass < blur; ++pass) canopy = around.of(canopy);
   Random random(seed);
   for (std::size_t i = 0; i < canopy.size(); ++i) {
     map.weight[i] = 10.0F;
