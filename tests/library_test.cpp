@@ -280,8 +280,11 @@ TEST(RegisterClouds, TakesThePathOfTheRobot) {
   ASSERT_EQ(path.size(), 2U);
   const Registration result = registerClouds(pair.fixed, pair.moving, pair.guess, {}, {}, path);
   EXPECT_TRUE(result.accepted());
-  ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_NE(result.warnings.front().find("the path makes no difference"), std::string::npos);
+  EXPECT_EQ(result.warnings, pair.moving.warnings);
+  const Registration by_flow =
+      registerClouds(pair.fixed, pair.moving, pair.guess, Options("paper"), {}, path);
+  ASSERT_FALSE(by_flow.warnings.empty());
+  EXPECT_NE(by_flow.warnings.front().find("the path makes no difference"), std::string::npos);
   std::ofstream(file) << "one place\n";
   expectError<InputError>([&] { readPath(file); }, "path.txt", ErrorKind::kInput);
 }

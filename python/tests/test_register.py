@@ -77,7 +77,7 @@ def test_the_path_of_the_robot_is_taken(drone, robot, guess, tmp_path):
     at = robot.xyz
     path = at[[at[:, 0].argmin(), at[:, 0].argmax()]]
     result = agricolmap.register(drone, robot, guess, path=path[:, :2])
-    assert result.accepted and "the path makes no difference" in result.warnings[0]
+    assert result.accepted and not result.warnings
     with pytest.raises(agricolmap.UsageError, match=r"path: has shape \(2,\)"):
         agricolmap.register(drone, robot, guess, path=[1, 2])
 

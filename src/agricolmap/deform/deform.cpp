@@ -117,9 +117,10 @@ Fitted fitted(const refine::PairSignals& signals, const Eigen::Affine2d& pose, c
   return result;
 }
 
-/// Least squares of the displacement over the map's cells in what is an affine as well: shift, and
-/// along the path turn and stretch. Takes them from the deformation and returns them as an affine
-/// of the moving frame to come before the deformation, in displacements.
+/// Least squares of the displacement over the map's cells in what is an affine as well where the
+/// path is straight: shift, and along the path turn and stretch. Takes them from the deformation
+/// and returns them as an affine of the moving frame to come before the deformation, in
+/// displacements.
 void moveStraightPart(const map::SignalMap& moving, Bend& bend) {
   Deformation& deformation = bend.deformation;
   const Path& path = deformation.path();
@@ -151,7 +152,7 @@ void moveStraightPart(const map::SignalMap& moving, Bend& bend) {
     const double u = deformation.basis().place(i) - 0.5 * length;
     deformation.coefficients.row(i).head<2>() -= (part.head<2>() + u * part.tail<2>()).transpose();
   }
-  // The same as an affine: exact on a straight path.
+  // The same as an affine.
   const Eigen::Vector2d tangent = path.tangent(0.5 * length);
   const Eigen::Vector2d normal_to(-tangent.y(), tangent.x());
   const Eigen::Vector2d left(-ahead.y(), ahead.x());
@@ -160,6 +161,24 @@ void moveStraightPart(const map::SignalMap& moving, Bend& bend) {
                                 left.dot(part.tail<2>()) * ahead * normal_to.transpose();
   bend.pose.linear() += slope;
   bend.pose.translation() += part.head<2>() - slope * middle;
+}
+
+/// Of a path that turns no stretch or turn along it is an affine as well: the shift alone is taken
+/// from the deformation.
+void moveShift(const map::SignalMap& moving, Bend& bend) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double count = 0.0;
+  for (int r = 0; r < moving.frame.rows; ++r) {
+    for (int c = 0; c < moving.frame.cols; ++c) {
+      if (moving.weight(r, c) <= 0.0F) continue;
+      sum += bend.deformation.at(moving.frame.centre(r, c)).head<2>();
+      count += 1.0;
+    }
+  }
+  if (count == 0.0) return;
+  const Eigen::Vector2d shift = sum / count;
+  bend.deformation.coefficients.leftCols<2>().rowwise() -= shift.transpose();
+  bend.pose.pretranslate(shift);
 }
 
 /// Largest horizontal displacement on the path [m].
@@ -248,17 +267,19 @@ bool confirmed(const BendFit& fit, const BendOptions& options) {
 }  // namespace
 
 std::optional<Bend> followBend(const refine::PairSignals& signals, const Eigen::Affine2d& pose,
-                               const refine::VerticalResult& heights,
+                               const refine::VerticalResult& heights, const Path& path,
                                const std::vector<PieceOffset>& pieces, const BendOptions& options) {
-  const map::SignalMap& moving = signals.moving().at(kCoarse);
-  const map::StripFrame strip = map::stripFrame(moving);
-  if (2.0 * strip.half_extent.x() < kLeastLength) return std::nullopt;
-  const Path path = straightPath(strip);
+  if (path.length() < kLeastLength) return std::nullopt;
   const SplineBasis basis(path.length(), options.node);
   const Fitted best = fitted(signals, pose, path, basis, pieces);
   if (!best.fit.coefficients.allFinite() || !confirmed(best.fit, options)) return std::nullopt;
   Bend bend = bendOf(best, path, basis, pose);
-  moveStraightPart(moving, bend);
+  const map::SignalMap& moving = signals.moving().at(kCoarse);
+  if (path.straight()) {
+    moveStraightPart(moving, bend);
+  } else {
+    moveShift(moving, bend);
+  }
   measureSize(moving, bend);
   addRise(signals, heights, options, bend);
   return bend;

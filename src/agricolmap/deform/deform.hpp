@@ -36,9 +36,10 @@ struct Bend {
 };
 
 /// Nothing where the blocks do not confirm it, or no map tells. `pose` and `heights`: of the
-/// registration without it; `pieces`: where pieces of the strip lie beside `pose`, if any do.
+/// registration without it; `path`: along which the strip bends, levelled moving frame; `pieces`:
+/// where pieces along it lie beside `pose`, if any do.
 std::optional<Bend> followBend(const refine::PairSignals& signals, const Eigen::Affine2d& pose,
-                               const refine::VerticalResult& heights,
+                               const refine::VerticalResult& heights, const Path& path,
                                const std::vector<PieceOffset>& pieces, const BendOptions& options);
 
 /// The spline, nodes `node` [m] apart, of what takes points of the path elsewhere: `laid`, moving

@@ -32,11 +32,13 @@ struct BentScene {
   explicit BentScene(const Offset& offset)
       : scene(testing::bentScene(kField, kError, kLength, 5, offset)) {}
   std::optional<Bend> follow(const std::vector<PieceOffset>& pieces = {},
-                             const BendOptions& options = {}) const {
+                             const BendOptions& options = {},
+                             const std::optional<Path>& path = {}) const {
     const correlation::MapSignals fixed(scene.fixed, {});
     const correlation::MapSignals moving(scene.moving, {});
     const refine::PairSignals signals(fixed, moving, {}, {});
-    return followBend(signals, scene.pose, flat(), pieces, options);
+    const Path straight = straightPath(map::stripFrame(signals.moving().at(3)));
+    return followBend(signals, scene.pose, flat(), path ? *path : straight, pieces, options);
   }
   /// How far the strip is off, root mean square along its middle [m].
   double errorOf(const std::optional<Bend>& bend, const Offset& offset) const {
@@ -68,6 +70,18 @@ TEST(Deform, FollowsDrift) {
   const double before = bent.errorOf({}, kDrift);
   EXPECT_LT(bent.errorOf(bend, kDrift), std::min(0.008, 0.3 * before));
   EXPECT_NE(describe(*bend).find("bend"), std::string::npos);
+}
+
+TEST(Deform, FollowsDriftAlongAPathThatTurns) {
+  const BentScene bent(kDrift);
+  const GridFrame& frame = bent.scene.moving.frame;
+  const Eigen::Vector2d start = frame.corner + Eigen::Vector2d(0.0, 0.5 * frame.rows * frame.cell);
+  const Path path(
+      {start, start + Eigen::Vector2d(0.5 * kLength, 0.6), start + Eigen::Vector2d(kLength, -0.3)});
+  const auto bend = bent.follow({}, {}, path);
+  ASSERT_TRUE(bend);
+  EXPECT_EQ(bend->deformation.path().corners(), path.corners());
+  EXPECT_LT(bent.errorOf(bend, kDrift), 0.01);
 }
 
 TEST(Deform, InventsNoneWhereNothingBends) {

@@ -56,6 +56,16 @@ Eigen::Vector2d Path::point(double along, double aside) const {
          aside * Eigen::Vector2d(-direction.y(), direction.x());
 }
 
+Path stretchOf(const Path& path, double from, double to) {
+  std::vector<Eigen::Vector2d> corners = {path.point(from)};
+  for (std::size_t i = 1; i + 1 < path.corners().size(); ++i) {
+    const double along = path.ends()[i];
+    if (along > from && along < to) corners.push_back(path.corners()[i]);
+  }
+  if (to > from) corners.push_back(path.point(to));
+  return Path(corners);
+}
+
 Path straightPath(const map::StripFrame& strip) {
   const Eigen::Vector2d arm = strip.half_extent.x() * strip.axes.col(0);
   return Path({strip.centre - arm, strip.centre + arm});

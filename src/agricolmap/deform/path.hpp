@@ -24,7 +24,9 @@ class Path {
   explicit Path(const std::vector<Eigen::Vector2d>& corners);
 
   double length() const { return ends_.back(); }  ///< [m]
+  bool straight() const { return corners_.size() == 2; }
   const std::vector<Eigen::Vector2d>& corners() const { return corners_; }
+  const std::vector<double>& ends() const { return ends_; }  ///< path length at each corner [m]
   /// By the nearest piece of the path; of equally near ones the first.
   PathPlace place(const Eigen::Vector2d& point) const;
   /// The point at `along`, `aside` to the left of it.
@@ -36,8 +38,12 @@ class Path {
 
   std::vector<Eigen::Vector2d> corners_;
   std::vector<Eigen::Vector2d> directions_;  ///< of the piece behind each corner but the last
-  std::vector<double> ends_;                 ///< path length at each corner
+  std::vector<double> ends_;                 ///< see ends()
 };
+
+/// From `from` to `to` along the path, which goes straight on before 0 and behind its length [m].
+/// Throws UsageError when nothing is left.
+Path stretchOf(const Path& path, double from, double to);
 
 /// Of a strip whose path nothing tells: straight through its middle, from end to end.
 Path straightPath(const map::StripFrame& strip);

@@ -39,6 +39,17 @@ TEST(Path, PutsAPlaceBackWhereItCameFrom) {
   }
 }
 
+TEST(Path, IsCutOrGoesStraightOn) {
+  const Path middle = stretchOf(corner(), 1.0, 5.5);
+  EXPECT_DOUBLE_EQ(middle.length(), 4.5);
+  EXPECT_EQ(middle.corners().size(), 3U);
+  EXPECT_TRUE(middle.point(4.5).isApprox(Eigen::Vector2d(4.0, 1.5)));
+  const Path longer = stretchOf(corner(), -1.0, 8.0);
+  EXPECT_DOUBLE_EQ(longer.length(), 9.0);
+  EXPECT_TRUE(stretchOf(corner(), 1.0, 3.0).straight());
+  EXPECT_THROW(stretchOf(corner(), 2.0, 2.0), UsageError);
+}
+
 TEST(Path, RefusesASinglePlace) {
   EXPECT_THROW(Path({{1.0, 1.0}, {1.0, 1.0}}), UsageError);
   EXPECT_THROW(Path({}), UsageError);

@@ -24,6 +24,8 @@ constexpr double kStraight = 0.25;
 constexpr double kTolerance = 0.03;  ///< corners nearer to the line between others go [m]
 constexpr double kNear = 4.0;        ///< the robot saw what is so near to its path [m]
 constexpr double kLeastNear = 0.5;   ///< share of the map
+/// One cell in so many may lie before or behind the stretch that the map shows.
+constexpr std::size_t kOddCells = 1000;
 /// The path comes by again when it was so much farther on by then [m].
 constexpr double kAgain = 6.0;
 
@@ -142,8 +144,9 @@ deform::Path pathThrough(const std::vector<Eigen::Vector2d>& places, const map::
   if (places.size() < 2) {
     throw InputError(fmt::format("{}: {} places; a path needs two at least", name, places.size()));
   }
-  deform::Path path = simplified(places);
-  std::size_t seen = 0, near = 0;
+  const deform::Path path = simplified(places);
+  std::size_t seen = 0;
+  std::vector<double> near;
   for (int r = 0; r < moving.frame.rows; ++r) {
     for (int c = 0; c < moving.frame.cols; ++c) {
       if (moving.weight(r, c) <= 0.0F) continue;
@@ -151,18 +154,22 @@ deform::Path pathThrough(const std::vector<Eigen::Vector2d>& places, const map::
       const deform::PathPlace place = path.place(moving.frame.centre(r, c));
       if (std::abs(place.aside) <= kNear && place.along >= -kNear &&
           place.along <= path.length() + kNear) {
-        ++near;
+        near.push_back(place.along);
       }
     }
   }
-  if (static_cast<double>(near) < kLeastNear * static_cast<double>(seen)) {
+  if (near.empty() || static_cast<double>(near.size()) < kLeastNear * static_cast<double>(seen)) {
     throw InputError(fmt::format(
         "{}: only {:.0f} % of the moving map lie within {} m of this path; it must be in the "
         "coordinates of the moving cloud's file",
-        name, 100.0 * static_cast<double>(near) / std::max<double>(1.0, static_cast<double>(seen)),
+        name,
+        100.0 * static_cast<double>(near.size()) / std::max<double>(1.0, static_cast<double>(seen)),
         kNear));
   }
-  return path;
+  // A trajectory may be of all the day.
+  const std::size_t few = near.size() / kOddCells;
+  const double from = valueAtRank(near, few), to = valueAtRank(near, near.size() - 1 - few);
+  return to > from ? deform::stretchOf(path, from, to) : path;
 }
 
 double drivenTwice(const deform::Path& path, double distance) {

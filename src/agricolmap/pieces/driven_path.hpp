@@ -21,8 +21,9 @@ struct ShapePath {
 /// crosses itself or turns back.
 ShapePath pathOfShape(const map::SignalMap& moving);
 
-/// The path through places in the levelled frame of the moving map, without the corners that make
-/// no difference. Throws InputError when it lies beside the map; `name` is what it is called there.
+/// The path through places in the levelled frame of the moving map, as far as the map goes and
+/// without the corners that make no difference. Throws InputError when it lies beside the map;
+/// `name` is what it is called there.
 deform::Path pathThrough(const std::vector<Eigen::Vector2d>& places, const map::SignalMap& moving,
                          const std::string& name);
 

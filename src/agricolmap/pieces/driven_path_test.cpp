@@ -76,6 +76,17 @@ TEST(PathThrough, KeepsCornersThatMatterAndRefusesAPathBesideTheMap) {
   EXPECT_THROW(pathThrough({{1.0, 1.0}}, map, "robot"), InputError);
 }
 
+TEST(PathThrough, IsOfTheStretchThatTheMapShows) {
+  const deform::Path strip({{-6.0, 0.0}, {6.0, 0.0}});
+  const map::SignalMap map = mapOf([&](const auto& p) { return nearTo(strip, p, 2.2); });
+  const deform::Path day = pathThrough({{-29.0, 20.0}, {-20.0, 0.0}, {20.0, 0.0}}, map, "robot");
+  EXPECT_TRUE(day.straight());
+  EXPECT_NEAR(day.length(), 12.0, 0.5);
+  EXPECT_NEAR(day.point(0.0).x(), -6.0, 0.3);
+  // A camera that looks ahead sees further than the robot goes.
+  EXPECT_NEAR(pathThrough({{-5.0, 0.0}, {4.0, 0.0}}, map, "robot").length(), 12.0, 0.5);
+}
+
 TEST(DrivenTwice, TellsThereAndBackFromALine) {
   EXPECT_EQ(drivenTwice(deform::Path({{0.0, 0.0}, {40.0, 0.0}}), 2.5), 0.0);
   const deform::Path back({{0.0, 0.0}, {40.0, 0.0}, {40.0, 2.0}, {0.0, 2.0}});

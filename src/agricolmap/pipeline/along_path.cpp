@@ -97,10 +97,12 @@ Outcome placeAlongPath(const Cloud& moving, const std::vector<Eigen::Vector3d>& 
                        const RegistrationOptions& options, const Locator& locator, Monitor& monitor,
                        PairMaps& maps) {
   if (!locator) {
-    const auto path = monitor.run(Stage::kSignals,
-                                  [&] { return pathOf(moving, places, maps, options, monitor); });
-    if (path) {
-      auto outcome = placeByPieces(moving, *path, options, monitor, maps);
+    maps.path = monitor.run(Stage::kSignals,
+                            [&] { return pathOf(moving, places, maps, options, monitor); });
+    // What is searched as a whole is told by its shape to be a strip only where it is much longer.
+    const double whole = places.empty() ? options.pieces.from : options.search.max_length;
+    if (maps.path && maps.path->length() > whole) {
+      auto outcome = placeByPieces(moving, *maps.path, options, monitor, maps);
       if (outcome) return *std::move(outcome);
     }
   }

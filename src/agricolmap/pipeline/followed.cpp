@@ -15,12 +15,17 @@ constexpr double kMostLost = 0.01;
 /// A slip has a place and an offset.
 constexpr double kFreedomOfSlip = 3.0;
 
-/// What the slices of the evidence tell of where pieces of the strip lie.
-std::vector<deform::PieceOffset> piecesOf(const verdict::PartsReport& parts) {
+/// What the slices of the evidence, which lie straight across the strip, tell of where pieces of it
+/// along the path lie.
+std::vector<deform::PieceOffset> piecesOf(const verdict::Evidence& evidence,
+                                          const deform::Path& path) {
   std::vector<deform::PieceOffset> pieces;
-  for (const verdict::SliceOffset& slice : parts.slices) {
-    pieces.push_back({slice.along + 0.5 * parts.length, slice.offset});
+  for (const verdict::SliceOffset& slice : evidence.parts.slices) {
+    pieces.push_back({path.place(evidence.strip.world({slice.along, 0.0})).along, slice.offset});
   }
+  std::stable_sort(
+      pieces.begin(), pieces.end(),
+      [](const deform::PieceOffset& a, const deform::PieceOffset& b) { return a.along < b.along; });
   return pieces;
 }
 
@@ -49,15 +54,18 @@ Eigen::Matrix3d throughPose(const Placed& placed) {
 }  // namespace
 
 void followBends(const refine::PairSignals& signals, const SearchSpace& space,
-                 const Refined& refined, const RegistrationOptions& options, Monitor& monitor,
-                 Placed& placed) {
+                 const std::optional<deform::Path>& known, const Refined& refined,
+                 const RegistrationOptions& options, Monitor& monitor, Placed& placed) {
   if (options.deform == DeformKind::kNone || options.refine != RefineKind::kDense ||
       placed.heights.status != refine::VerticalStatus::kOk) {
     return;
   }
+  const deform::Path path =
+      known ? *known
+            : deform::straightPath(map::stripFrame(signals.moving().at(refine::kRankingFactor)));
   std::optional<deform::Bend> bend = monitor.run(Stage::kDeform, [&] {
-    return deform::followBend(signals, placed.pose, placed.heights, piecesOf(placed.evidence.parts),
-                              options.bend);
+    return deform::followBend(signals, placed.pose, placed.heights, path,
+                              piecesOf(placed.evidence, path), options.bend);
   });
   if (!bend) return;
   Followed followed = monitor.run(Stage::kDeform, [&] {

@@ -9,11 +9,12 @@
 
 namespace agricolmap::pipeline {
 
-/// Follows what bends the strip and makes `placed` what is measured without it; leaves it as it is
+/// Follows what bends the strip along `path` (levelled moving frame; nothing: straight through its
+/// middle) and makes `placed` what is measured without it; leaves it as it is
 /// where nothing is confirmed, or where the straightened strip fits no better.
 void followBends(const refine::PairSignals& signals, const SearchSpace& space,
-                 const Refined& refined, const RegistrationOptions& options, Monitor& monitor,
-                 Placed& placed);
+                 const std::optional<deform::Path>& path, const Refined& refined,
+                 const RegistrationOptions& options, Monitor& monitor, Placed& placed);
 
 /// What the deformation moves points by, in the coordinates of the files.
 class Displacement {

@@ -118,7 +118,7 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
   verdict.remedies = verdict::remediesFor(verdict, finding, space, options.verdict);
   if (placed.followed) verdict.reasons.push_back(describe(placed.followed->bend));
-  // Of shorter strips a path makes no difference.
+  // Looked at in long strips alone: what the sides of a short one differ by may be its plants.
   const bool is_long = 2.0 * placed.evidence.strip.half_extent.x() > options.search.max_length;
   if (const auto apart = verdict::sidesApart(placed.evidence); apart && is_long) {
     verdict.reasons.push_back(fmt::format(

@@ -134,7 +134,6 @@ std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen:
   if (places.empty()) {
     pieces::ShapePath shape = pieces::pathOfShape(signals);
     if (!shape.path) monitor.warn(shape.why_not);
-    if (shape.path && shape.path->length() <= options.pieces.from) return std::nullopt;
     return shape.path;
   }
   std::vector<Eigen::Vector2d> levelled;
@@ -149,12 +148,7 @@ std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen:
         "other, and what both saw counts for the nearer one",
         100.0 * twice));
   }
-  if (path.length() > options.search.max_length) return path;
-  monitor.warn(
-      fmt::format("the path makes no difference: strips of no more than {:g} m are placed "
-                  "as a whole",
-                  options.search.max_length));
-  return std::nullopt;
+  return path;
 }
 
 PriorUncertainty withDrift(PriorUncertainty prior, double drift) {

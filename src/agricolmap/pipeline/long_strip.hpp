@@ -14,10 +14,9 @@
 
 namespace agricolmap::pipeline {
 
-/// The path along which the strip is placed by pieces; nothing where it is placed as a whole, being
-/// short or by another chain. `places`: of the robot, in the moving file's coordinates; none: the
-/// strip's shape tells its path. Warns where the strip is long and it does not, and where a path
-/// makes no difference.
+/// Where the robot drove, in the moving map. `places`: of the robot, in the moving file's
+/// coordinates; none: the shape of a long strip tells, and nothing that of a short one. Warns where
+/// the strip is long and its shape does not, and where a path makes no difference.
 std::optional<deform::Path> pathOf(const Cloud& moving, const std::vector<Eigen::Vector3d>& places,
                                    const PairMaps& maps, const RegistrationOptions& options,
                                    Monitor& monitor);

@@ -1,7 +1,10 @@
 // Levelled and gridded: the two maps of a pair, which all that follows looks at.
 #pragma once
 
+#include <optional>
+
 #include "agricolmap/core/monitor.hpp"
+#include "agricolmap/deform/path.hpp"
 #include "agricolmap/map/grid_map.hpp"
 #include "agricolmap/pieces/bend.hpp"
 #include "agricolmap/pipeline/options.hpp"
@@ -17,6 +20,8 @@ struct PairMaps {
   SearchSpace space;      ///< where the guess leaves the moving map
   map::GridMap fixed;
   map::GridMap moving;
+  /// Where the robot drove, in the moving map; nothing: not known, straight through the strip.
+  std::optional<deform::Path> path = std::nullopt;
 };
 
 /// Both clouds levelled under the guess (Sec. II, assumption 5) and drawn as multimodal grid maps

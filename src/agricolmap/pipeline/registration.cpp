@@ -43,7 +43,7 @@ Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located
   if (rivals) refined.rivals = *std::move(rivals);
   Measured measured = measureStraightened(signals, maps.space, refined, options, monitor);
   outcome.trace.straightened = measured.straightened;
-  followBends(signals, maps.space, refined, options, monitor, measured.placed);
+  followBends(signals, maps.space, maps.path, refined, options, monitor, measured.placed);
   outcome.rivals = std::move(refined.rivals);
   outcome.verdict = judgePlaced(measured.placed, outcome.rivals, maps.space, options);
   outcome.placed = std::move(measured.placed);
@@ -81,6 +81,10 @@ Registration registerClouds(const FixedCloud& fixed, const Cloud& moving,
   const RegistrationOptions options = resolved(chosen);
   requireUsable(fixed.facts(), factsOf(moving), options, locator != nullptr);
   PairMaps maps = mapPair(fixed, moving, guess, options, monitor);
+  if (options.prior.scale_unknown && !path.empty()) {
+    monitor.warn(
+        "the path makes no difference: at an unknown scale the strip is placed as a whole");
+  }
   auto [outcome, scale] =
       options.prior.scale_unknown
           ? placeAtAnyScale(fixed, moving, guess, options, locator, monitor, maps)
