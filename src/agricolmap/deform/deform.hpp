@@ -48,6 +48,11 @@ std::optional<Bend> followBend(const refine::PairSignals& signals, const Eigen::
 Bend bendThrough(const Path& path, const Eigen::Affine2d& pose, double node, double deviation,
                  const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& laid);
 
+/// What the longest stretch between slips is moved by, as the nearest affine over its seen cells:
+/// moving levelled frame → itself, to come before `pose`. A guess holds of a part of the strip
+/// rather than of `pose`, which slips turn and stretch. No slips: nothing, the identity.
+Eigen::Affine2d moveOfLongestStretch(const map::SignalMap& moving, const Bend& bend);
+
 /// How far it bends and where it slipped, in plain words.
 std::string describe(const Bend& bend);
 

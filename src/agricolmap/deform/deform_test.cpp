@@ -67,6 +67,8 @@ TEST(Deform, FollowsDrift) {
   const auto bend = bent.follow();
   ASSERT_TRUE(bend);
   EXPECT_TRUE(bend->deformation.slips.empty());
+  const map::SignalMap map = map::makeSignalMap(bent.scene.moving, 3, {});
+  EXPECT_TRUE(moveOfLongestStretch(map, *bend).isApprox(Eigen::Affine2d::Identity()));
   const double before = bent.errorOf({}, kDrift);
   EXPECT_LT(bent.errorOf(bend, kDrift), std::min(0.008, 0.3 * before));
   EXPECT_NE(describe(*bend).find("bend"), std::string::npos);
@@ -107,6 +109,12 @@ TEST(Deform, FollowsASlipAndTellsWhereItIs) {
   EXPECT_NEAR(slip.along, 5.0, 0.15);
   EXPECT_LT(slipped.errorOf(bend, kSlipped), 0.05);
   EXPECT_NE(describe(*bend).find("slip"), std::string::npos);
+  // The whole's affine is turned by the slip, that of the part before it is not.
+  const map::SignalMap map = map::makeSignalMap(slipped.scene.moving, 3, {});
+  const Eigen::Matrix2d part = (bend->pose * moveOfLongestStretch(map, *bend)).linear();
+  const Eigen::Matrix2d truth = slipped.scene.pose.linear();
+  EXPECT_GT((bend->pose.linear() - truth).norm(), 0.03);
+  EXPECT_LT((part - truth).norm(), 0.01);
 }
 
 TEST(Deform, SlipsAreInOrderAlongThePath) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <string>
 
@@ -28,6 +29,40 @@ Eigen::Vector3d unbent(const Eigen::Vector3d& moving, const Deformation& deforma
   straight.head<2>() += pose.linear().inverse() * displacement.head<2>();
   straight.z() += displacement.z();
   return straight;
+}
+
+Eigen::Affine2d moveOfLongestStretch(const map::SignalMap& moving, const Bend& bend) {
+  const Deformation& deformation = bend.deformation;
+  if (deformation.slips.empty()) return Eigen::Affine2d::Identity();
+  double from = 0.0, longest_from = 0.0, longest_to = 0.0;
+  const auto endAt = [&](double to) {
+    if (to - from > longest_to - longest_from) longest_from = from, longest_to = to;
+    from = to;
+  };
+  for (const Slip& slip : deformation.slips) endAt(slip.along);
+  endAt(deformation.path().length());
+  // About the stretch's middle, for the numbers' sake.
+  const Eigen::Vector2d middle = deformation.path().point(0.5 * (longest_from + longest_to));
+  Eigen::Matrix3d normal = 1e-9 * Eigen::Matrix3d::Identity();
+  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
+  for (int r = 0; r < moving.frame.rows; ++r) {
+    for (int c = 0; c < moving.frame.cols; ++c) {
+      if (moving.weight(r, c) <= 0.0F) continue;
+      const Eigen::Vector2d p = moving.frame.centre(r, c);
+      const double along = deformation.path().place(p).along;
+      if (along < longest_from || along > longest_to) continue;
+      const Eigen::Vector3d row = (p - middle).homogeneous();
+      normal += row * row.transpose();
+      right += row * deformation.at(p).head<2>().transpose();
+    }
+  }
+  const Eigen::Matrix<double, 3, 2> found = normal.ldlt().solve(right);
+  const Eigen::Matrix2d back = bend.pose.linear().inverse();
+  const Eigen::Matrix2d slope = back * found.topRows<2>().transpose();
+  Eigen::Affine2d move = Eigen::Affine2d::Identity();
+  move.linear() += slope;
+  move.translation() = back * found.row(2).transpose() - slope * middle;
+  return move;
 }
 
 map::GridMap straightened(const map::GridMap& moving, const Bend& bend) {

@@ -70,7 +70,9 @@ void followBends(const refine::PairSignals& signals, const SearchSpace& space,
   if (!bend) return;
   Followed followed = monitor.run(Stage::kDeform, [&] {
     map::GridMap straight = deform::straightened(signals.moving().grid(), *bend);
-    return Followed{*std::move(bend), std::move(straight)};
+    const Eigen::Affine2d longest =
+        deform::moveOfLongestStretch(signals.moving().at(refine::kRankingFactor), *bend);
+    return Followed{*std::move(bend), std::move(straight), longest};
   });
   const correlation::MapSignals moving(followed.straight, options.signal);
   const refine::PairSignals straight = monitor.run(Stage::kDeform, [&] {

@@ -108,12 +108,13 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
   if (placed.heights.status != refine::VerticalStatus::kOk) {
     return verdict::rejectBecause("the heights of the two maps do not fit one another");
   }
-  verdict::Finding finding{.evidence = placed.evidence,
-                           .uncertainty = placed.uncertainty,
-                           .heights = placed.heights_verdict,
-                           .overlap = placed.overlap,
-                           .pose = placed.pose,
-                           .rivals = {}};
+  verdict::Finding finding{
+      .evidence = placed.evidence,
+      .uncertainty = placed.uncertainty,
+      .heights = placed.heights_verdict,
+      .overlap = placed.overlap,
+      .pose = placed.followed ? placed.pose * placed.followed->longest : placed.pose,
+      .rivals = {}};
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
   verdict.remedies = verdict::remediesFor(verdict, finding, space, options.verdict);

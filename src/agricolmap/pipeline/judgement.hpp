@@ -17,6 +17,8 @@ struct Followed {
   deform::Bend bend;
   /// The moving map without it, levelled moving frame: what all else of a Placed was measured on.
   map::GridMap straight;
+  /// What the longest stretch without a slip is moved by, see deform::moveOfLongestStretch.
+  Eigen::Affine2d longest = Eigen::Affine2d::Identity();
 };
 
 /// A pose of the moving map with all that was measured there.

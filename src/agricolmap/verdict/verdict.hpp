@@ -45,7 +45,9 @@ struct Finding {
   std::optional<PoseUncertainty> uncertainty;
   HeightsVerdict heights = {};
   double overlap = 0.0;  ///< share of the moving map's cells that the fixed map sees
-  Eigen::Affine2d pose = Eigen::Affine2d::Identity();  ///< levelled moving → levelled fixed
+  /// What the guess is held against, levelled moving → levelled fixed: the pose, and of a strip
+  /// that slipped that of its longest part.
+  Eigen::Affine2d pose = Eigen::Affine2d::Identity();
   std::vector<double> rivals;  ///< significances of the other distinct placements
 };
 
