@@ -185,6 +185,8 @@ TEST(SlipRms, PartsPushedIntoOneAnotherCannotBeToldApartWhereTheyOverlap) {
   // What was driven on by 30 cm too little lies over what came before: half of 60 cm are wrong.
   deformation.slips = {{.along = 5.0, .offset = {0.3, 0.0}, .deviation = 0.0}};
   EXPECT_NEAR(slipRms(deformation), 0.3 * std::sqrt(0.3 / 10.0), 1e-9);
+  EXPECT_NE(describe({.deformation = deformation}).find("over each other there for 0.30 m"),
+            std::string::npos);
   // Pulled apart there is nothing between them that could be wrong.
   deformation.slips.front().offset = {-0.3, 0.0};
   EXPECT_EQ(slipRms(deformation), 0.0);

@@ -77,10 +77,14 @@ Eigen::Vector3d Deformation::onPath(double along) const {
   return displacement;
 }
 
+double overlapAt(const Deformation& deformation, const Slip& slip) {
+  return std::max(0.0, slip.offset.dot(deformation.tangent(slip.along)));
+}
+
 double slipRms(const Deformation& deformation) {
   double sum = 0.0;
   for (const Slip& slip : deformation.slips) {
-    const double overlap = std::max(0.0, slip.offset.dot(deformation.tangent(slip.along)));
+    const double overlap = overlapAt(deformation, slip);
     sum += slip.offset.squaredNorm() * (kMisplaced * slip.place_deviation + overlap);
   }
   return std::sqrt(sum / deformation.path().length());

@@ -53,6 +53,10 @@ class Deformation {
   SplineBasis basis_;
 };
 
+/// How far the parts before and behind a slip were pushed into one another along the path: for so
+/// long both lie there in the file [m].
+double overlapAt(const Deformation& deformation, const Slip& slip);
+
 /// Root mean square over the strip of what points on the wrong side of a slip are off by [m]. Where
 /// the parts were pushed into one another, as far as they overlap, half of what lies there is.
 double slipRms(const Deformation& deformation);

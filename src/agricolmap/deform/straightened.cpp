@@ -8,12 +8,24 @@
 #include "agricolmap/deform/deform.hpp"
 
 namespace agricolmap::deform {
+namespace {
+
+constexpr double kOverlapWorthAWord = 0.1;  // [m]
+
+}  // namespace
 
 std::string describe(const Bend& bend) {
   std::string text;
   for (const Slip& slip : bend.deformation.slips) {
     text += fmt::format("{}a slip of {:.2f} m at {:.1f} of {:.1f} m", text.empty() ? "" : ", ",
                         slip.offset.norm(), slip.along, bend.deformation.path().length());
+    const double overlap = overlapAt(bend.deformation, slip);
+    if (overlap > kOverlapWorthAWord) {
+      text += fmt::format(
+          " (the parts before and behind it lie over each other there for {:.2f} m, and whose a "
+          "point is cannot be told)",
+          overlap);
+    }
   }
   if (!text.empty()) text += " and ";
   return text + fmt::format(
