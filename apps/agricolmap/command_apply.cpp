@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -149,11 +148,9 @@ io::CopiedCloud apply(const Job& job, const report::StoredRegistration& run,
                       Progress& progress) {
   const io::CommonFrame frame = frameOf(job.from, run, arguments);
   printWarnings(frame.warnings);
-  const std::uint64_t points = io::pointsOf(job.from);
-  io::CopiedCloud copied =
-      io::moveFile(job.from, output.path(job.name), job.format,
-                   {frame.moving.get(), run.moving_origin, moveOf(run), frame.crs},
-                   [&](std::uint64_t done) { progress.points(done, points); });
+  io::CopiedCloud copied = io::moveFile(
+      job.from, output.path(job.name), job.format,
+      {frame.moving.get(), run.moving_origin, moveOf(run), frame.crs}, progress.ofPasses());
   printWarnings(copied.warnings);
   warnOfLostCrs(job.name, job.format, frame.crs);
   return copied;
