@@ -74,7 +74,6 @@ PointFile openPoints(const MappedFile& file, const std::string& name, const Read
     throw InputError(fmt::format("{}: not a point cloud: {}", name, remedyFor(file.text())));
   }
   PointFile opened = openAs(*format, file, name, options);
-  opened.file = &file;
   if (options.map != nullptr) {
     opened.source = std::make_unique<MappedSource>(std::move(opened.source), *options.map);
   }
