@@ -105,8 +105,7 @@ io::CommonFrame frameOf(const std::string& cloud, const report::StoredRegistrati
   const std::string of_run = arguments.run + ": the registration";
   if (run.crs.wkt.empty()) {
     if (!own.crs) return {};
-    if (!io::isProjected(*own.crs) || own.crs->horizontal_unit != 1.0 ||
-        own.crs->vertical_unit != 1.0) {
+    if (!io::isInMetres(*own.crs)) {
       throw InputError(fmt::format(
           "{}: is in {}, and the registration does not say its coordinate system, so that nobody "
           "knows how to bring the cloud there; register again with --fixed-crs and --moving-crs",
