@@ -12,6 +12,9 @@
 namespace agricolmap::test {
 namespace {
 
+/// UTM zone 32, in feet.
+constexpr const char* kFeet = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft +no_defs";
+
 class FormatsTest : public CliTest {
  protected:
   ProgramResult registerPair(const std::string& fixed, const std::string& moving,
@@ -97,11 +100,55 @@ TEST_F(FormatsTest, FeetAreMetresInTheEnd) {
     for (double& value : point.xyz) value *= 3937.0 / 1200.0;
   }
   const std::string feet = write("feet.ply", plyBytes(points));
-  const std::string proj = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft +no_defs";
   const std::string uav = converted(files.uav(), "uav.las", {"--crs", "EPSG:32632"});
-  const ProgramResult result = registerPair(uav, feet, {"--moving-crs", proj});
+  const ProgramResult result = registerPair(uav, feet, {"--moving-crs", kFeet});
   EXPECT_NE(result.err.find("brought to metres"), std::string::npos) << result.err;
   EXPECT_LT(rms(), 0.03);
+}
+
+TEST_F(FormatsTest, EvaluateBringsCloudsToWhereTheTransformLeads) {
+  const PairFiles files = pair("georeferenced");
+  const std::string uav = converted(files.uav(), "uav.las", {"--crs", "EPSG:32632"});
+  const std::string ugv =
+      converted(files.ugv(), "ugv.las", {"--crs", "EPSG:32632", "--to-crs", "EPSG:32633"});
+  registerPair(uav, ugv);
+  const std::string errors = inFolder("errors.json");
+  const auto rmsOf = [&](const std::string& transform, const std::string& moving,
+                         const std::string& said, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"evaluate", transform, moving, "--truth-points", files.truthPoints(),
+                               "-o", errors, "--overwrite"});
+    const ProgramResult result = run(more);
+    EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+    return jsonOf(errors).at("rms_m").get<double>();
+  };
+  const std::string reprojected = "33N to WGS 84 / UTM zone 32N";
+  EXPECT_LT(rmsOf(inFolder("out/transform.txt"), ugv, reprojected), 0.03);
+
+  // Without the report beside it nobody says where it leads.
+  const std::string alone = write("alone.txt", contentOf(inFolder("out/transform.txt")));
+  EXPECT_LT(rmsOf(alone, ugv, reprojected, {"--crs", "EPSG:32632"}), 0.03);
+  auto points = pointsOfPly(contentOf(files.ugv()));
+  for (PlyPoint& point : points) {
+    for (double& value : point.xyz) value *= 3937.0 / 1200.0;
+  }
+  const std::string feet = write("feet.ply", plyBytes(points));
+  write("feet.prj", kFeet);
+  const std::vector<std::string> evaluate{"evaluate", alone, feet, "--truth-points",
+                                          files.truthPoints()};
+  expectFailure(evaluate, 3, {"feet.ply", "no system of metres", "--crs"});
+  EXPECT_LT(rmsOf(alone, feet, "brought to metres", {"--crs", "EPSG:32632"}), 0.03);
+  expectFailure({"evaluate", alone, files.ugv(), "--truth-points", files.truthPoints(), "--crs",
+                 "EPSG:32632"},
+                2, {"--crs would do nothing"});
+}
+
+TEST_F(FormatsTest, AMatrixIsNoCloud) {
+  const std::string matrix = write("matrix.txt", "1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n");
+  const std::string cloud = write("a.ply", plyBytes(bumpySquare(1.0)));
+  const std::string what = "matrix.txt: not a point cloud: it is a 4x4 matrix";
+  expectFailure({"convert", matrix, inFolder("matrix.las")}, 3, {what});
+  expectFailure({"info", matrix}, 3, {what});
+  expectFailure({"register", cloud, matrix, "-o", inFolder("out")}, 3, {what});
 }
 
 TEST_F(FormatsTest, ASystemThatIsMissingIsSaid) {

@@ -210,7 +210,7 @@ void Batch::run(const std::vector<std::size_t>& strips, bool grounds) {
     const std::vector<std::size_t> all = of(strips);
     if (here.empty() && !(grounds && !all.empty())) continue;
     SharedFixed shared;
-    shared.on_pass = [this](std::size_t seen, std::size_t count) { progress_.points(seen, count); };
+    shared.on_pass = progress_.ofPasses();
     progress_.step(fmt::format("map {}", manifest_.maps[map].id));
     const auto fixed = prepare(here.empty() ? all : here, shared);
     shared.on_pass = {};

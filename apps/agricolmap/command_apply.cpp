@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -106,8 +105,7 @@ io::CommonFrame frameOf(const std::string& cloud, const report::StoredRegistrati
   const std::string of_run = arguments.run + ": the registration";
   if (run.crs.wkt.empty()) {
     if (!own.crs) return {};
-    if (!io::isProjected(*own.crs) || own.crs->horizontal_unit != 1.0 ||
-        own.crs->vertical_unit != 1.0) {
+    if (!io::isInMetres(*own.crs)) {
       throw InputError(fmt::format(
           "{}: is in {}, and the registration does not say its coordinate system, so that nobody "
           "knows how to bring the cloud there; register again with --fixed-crs and --moving-crs",
@@ -149,11 +147,9 @@ io::CopiedCloud apply(const Job& job, const report::StoredRegistration& run,
                       Progress& progress) {
   const io::CommonFrame frame = frameOf(job.from, run, arguments);
   printWarnings(frame.warnings);
-  const std::uint64_t points = io::pointsOf(job.from);
-  io::CopiedCloud copied =
-      io::moveFile(job.from, output.path(job.name), job.format,
-                   {frame.moving.get(), run.moving_origin, moveOf(run), frame.crs},
-                   [&](std::uint64_t done) { progress.points(done, points); });
+  io::CopiedCloud copied = io::moveFile(
+      job.from, output.path(job.name), job.format,
+      {frame.moving.get(), run.moving_origin, moveOf(run), frame.crs}, progress.ofPasses());
   printWarnings(copied.warnings);
   warnOfLostCrs(job.name, job.format, frame.crs);
   return copied;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/cloud/move_file.hpp"
 #include "agricolmap/io/crs/crs.hpp"
@@ -33,52 +33,71 @@ io::CloudFormat formatToWrite(const std::string& path) {
       "{}: its ending tells no format; known are .ply, .pcd, .las, .laz and .copc.laz", path));
 }
 
+/// How the coordinates of the source are read.
+struct Reading {
+  io::FileCrs crs;
+  std::optional<io::CommonFrame> frame;  ///< that they are brought into, if into another
+
+  const io::CoordinateMap* map() const { return frame ? frame->moving.get() : nullptr; }
+};
+
 /// From LAS to LAS point by point, with all that they have.
 io::CopiedCloud copyLas(const std::string& from, const io::OutputPath& to, io::CloudFormat format,
-                        const io::CommonFrame* frame, const Crs& crs, Progress& progress) {
+                        const Reading& reading, const Crs& crs, Progress& progress) {
   std::optional<io::CloudMove> move;
-  if (frame != nullptr) {
-    // Read for its origin alone: what is far from the others is left out as it is there.
-    const Cloud cloud = io::readCloud(from, {false, frame->moving.get()});
+  if (reading.frame) {
+    // Looked at for its origin alone: what is far from the others is left out as it is there.
+    io::StreamOptions look{{false, reading.map()}, 0, progress.ofPasses(), {}};
     move.emplace();
-    move->map = frame->moving.get();
-    move->origin = cloud.origin;
-    move->crs = frame->crs;
+    move->map = reading.map();
+    move->origin = io::factsOfFile(from, look).origin;
+    move->crs = reading.frame->crs;
   }
-  const std::uint64_t points = io::pointsOf(from);
-  return io::copyLas(from, to, format, move, crs,
-                     [&](std::uint64_t done) { progress.points(done, points); });
+  return io::copyLas(from, to, format, move, crs, progress.ofPasses());
+}
+
+/// Coordinates and colours of a cloud, which passes by, or of a raster, which is kept.
+std::unique_ptr<PointStream> pointsIn(const ConvertArguments& arguments, const io::MapFiles& from,
+                                      const Reading& reading, Progress& progress) {
+  Crs crs = reading.crs.crs.value_or(Crs());
+  if (reading.frame) crs = reading.frame->crs;
+  if (!from.raster) {
+    return io::streamCloud(from.main,
+                           {{true, reading.map()}, io::kKeepLittle, progress.ofPasses(), crs});
+  }
+  io::ImportOptions options;
+  arguments.flags.apply(optionTable(options));
+  Cloud cloud = !reading.frame && arguments.crs.empty()
+                    ? io::importOrthoDsm(from.main, from.model, options)
+                    : io::readMap(from, {true, reading.map()}, options);
+  if (reading.frame || reading.crs.crs) cloud.crs = crs;
+  return io::keptStream(std::move(cloud));
 }
 
 io::CopiedCloud convertMap(const ConvertArguments& arguments, const io::MapFiles& from,
                            const io::OutputPath& to, io::CloudFormat format, Progress& progress) {
-  const io::FileCrs crs = io::crsOfMap(from, arguments.crs);
-  std::optional<io::CommonFrame> frame;
-  if (!arguments.to_crs.empty()) frame = io::frameIn(crs, arguments.to_crs);
-  printWarnings(frame ? frame->warnings : crs.warnings);
+  Reading reading;
+  reading.crs = io::crsOfMap(from, arguments.crs);
+  const std::optional<Crs>& crs = reading.crs.crs;
+  if (!arguments.to_crs.empty()) reading.frame = io::frameIn(reading.crs, arguments.to_crs);
+  printWarnings(reading.frame ? reading.frame->warnings : reading.crs.warnings);
   const auto source = io::formatByContent(io::MappedFile(from.main).text());
   if (source && io::isLas(*source) && io::isLas(format)) {
     // COPC has no place for GeoTIFF keys: what they say is written as WKT.
     const bool anew = !arguments.crs.empty() || format == io::CloudFormat::kCopc;
-    return copyLas(from.main, to, format, frame ? &*frame : nullptr,
-                   anew && crs.crs ? *crs.crs : Crs(), progress);
+    return copyLas(from.main, to, format, reading, anew && crs ? *crs : Crs(), progress);
   }
-  if (!frame && crs.crs && !io::isProjected(*crs.crs)) {
+  if (!reading.frame && crs && !io::isProjected(*crs)) {
     throw InputError(fmt::format(
         "{}: its coordinates are degrees ({}), which are kept from LAS to LAS alone; bring them "
         "into a projected system (--to-crs EPSG:326<zone>: UTM north; 327<zone> south)",
-        from.main.string(), crs.crs->name));
+        from.main.string(), crs->name));
   }
-  io::ImportOptions options;
-  arguments.flags.apply(optionTable(options));
-  Cloud cloud = from.raster && !frame && arguments.crs.empty()
-                    ? io::importOrthoDsm(from.main, from.model, options)
-                    : io::readMap(from, {true, frame ? frame->moving.get() : nullptr}, options);
-  if (frame) cloud.crs = frame->crs;
-  if (!frame && crs.crs) cloud.crs = *crs.crs;
-  warnOfLostCrs(to.shown(), format, cloud.crs);
-  io::writeCloud(to, cloud, format);
-  return {cloud.size(), cloud.dropped_points, std::move(cloud.warnings)};
+  const auto points = pointsIn(arguments, from, reading, progress);
+  const CloudFacts& facts = points->facts();
+  warnOfLostCrs(to.shown(), format, facts.crs);
+  io::writeCloud(to, *points, format);
+  return {facts.points, facts.dropped_points, facts.warnings};
 }
 
 ExitCode runConvert(ConvertArguments arguments, const Globals& globals) {

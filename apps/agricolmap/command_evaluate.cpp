@@ -1,17 +1,21 @@
 // agricolmap evaluate TRANSFORM MOVING --truth TRUTH
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "agricolmap/core/affine_fit.hpp"
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/evaluate/metrics.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
+#include "agricolmap/report/json/registration_file.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -23,14 +27,77 @@ struct EvaluateArguments {
   std::string truth;
   std::string truth_points;
   std::string aligned;
+  std::string crs;
   std::string output;
 };
 
-evaluate::Truth readTruth(const EvaluateArguments& arguments, const Cloud& moving) {
+bool saysCrs(const std::string& cloud) { return !cloud.empty() && io::crsOf(cloud).crs; }
+
+/// What the coordinates that TRANSFORM and the truth lead to mean: as the user says, as the
+/// registration does that TRANSFORM is a result of, or as a cloud does that lies there. Nothing
+/// where nobody does, or no cloud says what would differ from it.
+io::FileCrs targetOf(const EvaluateArguments& arguments) {
+  io::FileCrs target;
+  if (!saysCrs(arguments.moving) && !saysCrs(arguments.truth_points) &&
+      !saysCrs(arguments.aligned)) {
+    if (arguments.crs.empty()) return target;
+    throw UsageError(
+        "--crs would do nothing: none of the clouds says its coordinate system; put a .prj beside "
+        "the one that is in another");
+  }
+  if (!arguments.crs.empty()) {
+    target = io::crsOf(arguments.moving, arguments.crs);
+    target.name = arguments.crs;
+  }
+  const std::filesystem::path report =
+      std::filesystem::path(arguments.transform).parent_path() / "registration.json";
+  std::error_code ignored;
+  if (!target.crs && std::filesystem::exists(report, ignored)) {
+    target.name = report.string();
+    if (Crs crs = report::readRegistration(report).crs; !crs.wkt.empty()) {
+      target.crs = std::move(crs);
+    }
+  }
+  for (const std::string& cloud : {arguments.truth_points, arguments.aligned}) {
+    if (!target.crs && !cloud.empty()) target = io::crsOf(cloud);
+  }
+  if (target.crs && !io::isProjected(*target.crs)) {
+    throw InputError(fmt::format(
+        "{}: its coordinates are degrees ({}), and errors are measured in metres; name a projected "
+        "system that TRANSFORM leads to with --crs",
+        target.name, target.crs->name));
+  }
+  return target;
+}
+
+/// A cloud in the target's system, as register brings it there; as it stands where the cloud does
+/// not say what it is in.
+Cloud readInto(const io::FileCrs& target, const std::string& path) {
+  const io::FileCrs own = io::crsOf(path);
+  io::CommonFrame frame;
+  frame.warnings = own.warnings;
+  if (own.crs && target.crs) {
+    frame = io::commonFrame({target.name, target.crs, {}}, own);
+  } else if (own.crs && io::isInMetres(*own.crs)) {
+    frame.crs = *own.crs;
+  } else if (own.crs) {
+    throw InputError(fmt::format(
+        "{}: is in {}, which is no system of metres, and nobody says which one TRANSFORM leads to; "
+        "name it with --crs",
+        path, own.crs->name));
+  }
+  printWarnings(frame.warnings);
+  Cloud cloud = io::readCloud(path, {false, frame.moving.get()});
+  printWarnings(cloud.warnings);
+  io::checkGroundScale(path, frame.crs, cloud.origin.head<2>());
+  return cloud;
+}
+
+evaluate::Truth readTruth(const EvaluateArguments& arguments, const io::FileCrs& target,
+                          const Cloud& moving) {
   evaluate::Truth truth;
   if (!arguments.truth_points.empty()) {
-    const Cloud points = io::readCloud(arguments.truth_points, {.colours = false});
-    printWarnings(points.warnings);
+    const Cloud points = readInto(target, arguments.truth_points);
     if (points.size() != moving.size()) {
       throw InputError(
           fmt::format("{}: has {} points, {} has {}; the truth needs one per moving "
@@ -63,14 +130,13 @@ ExitCode runEvaluate(const EvaluateArguments& arguments, const Globals& globals)
     throw UsageError("evaluate needs either --truth or --truth-points");
   }
   const Eigen::Affine3d estimate = io::readMatrix(arguments.transform);
-  const Cloud moving = io::readCloud(arguments.moving, {.colours = false});
-  printWarnings(moving.warnings);
-  const evaluate::Truth truth = readTruth(arguments, moving);
+  const io::FileCrs target = targetOf(arguments);
+  const Cloud moving = readInto(target, arguments.moving);
+  const evaluate::Truth truth = readTruth(arguments, target, moving);
   const evaluate::RegistrationErrors errors = evaluate::evaluateTransform(estimate, truth, moving);
   std::optional<evaluate::RegistrationErrors> of_points;
   if (!arguments.aligned.empty()) {
-    const Cloud aligned = io::readCloud(arguments.aligned, {.colours = false});
-    printWarnings(aligned.warnings);
+    const Cloud aligned = readInto(target, arguments.aligned);
     of_points = evaluate::evaluateAligned(aligned, truth, moving);
   }
   if (!arguments.output.empty()) {
@@ -117,6 +183,11 @@ CommandSlot addEvaluateCommand(CLI::App& app, const Globals& globals) {
                       "Cloud with the true place of every moving point, in fixed file coordinates");
   command->add_option("--aligned", arguments->aligned,
                       "aligned.ply of the registration: its points are scored as they lie, too");
+  command->add_option(
+      "--crs", arguments->crs,
+      "Coordinate system that TRANSFORM and the truth lead to: EPSG:32632, WKT or a "
+      "file with it. Default: what registration.json beside TRANSFORM says, else "
+      "the clouds that lie there; clouds that say another are brought to it");
   command->add_option("-o,--output", arguments->output, "JSON file for the errors");
   return {command, [arguments, &globals] { return runEvaluate(*arguments, globals); }};
 }

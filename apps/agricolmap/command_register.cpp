@@ -72,8 +72,7 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   run.command_line = commandText(globals.command_line);
   run.threads = globals.threads;
   const FixedSource fixed = [&](const io::MapFiles& files, const io::CommonFrame& frame) {
-    return streamedFixed(files, frame,
-                         [&](std::size_t seen, std::size_t of) { progress.points(seen, of); });
+    return streamedFixed(files, frame, progress.ofPasses());
   };
   const pipeline::Registration result =
       registerInto(run, fixed, output, monitor, printWarnings).registration;

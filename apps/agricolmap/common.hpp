@@ -69,6 +69,10 @@ class Progress {
   /// Of the step's present pass over a cloud, `seen` of `of` points are done. Passes that are short
   /// are not worth a word.
   void points(std::size_t seen, std::size_t of);
+  /// The same for those who call back, for as long as this lives.
+  std::function<void(std::size_t, std::size_t)> ofPasses() {
+    return [this](std::size_t seen, std::size_t of) { points(seen, of); };
+  }
   /// Takes the line away, for something else to be said.
   void clear() const { show(""); }
 

@@ -155,7 +155,7 @@ FactsInput readCloudInput(const std::string& path, const std::string& given, Pro
         path, crs.crs->name));
   }
   io::StreamOptions options;
-  options.on_pass = [&](std::size_t seen, std::size_t of) { progress.points(seen, of); };
+  options.on_pass = progress.ofPasses();
   const std::unique_ptr<PointStream> cloud = io::streamMap(files, options);
   FactsInput input;
   if (crs.crs) input.crs = *crs.crs;

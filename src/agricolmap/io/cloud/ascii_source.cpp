@@ -20,6 +20,8 @@ namespace {
 
 /// Fixed, so that pieces do not depend on the number of threads.
 constexpr std::size_t kPieceBytes = 1U << 18;
+/// Pieces that are looked through before their memory is released.
+constexpr std::size_t kHeld = 64;
 
 bool hasWords(std::string_view line) { return !std::all_of(line.begin(), line.end(), isBlank); }
 
@@ -45,21 +47,6 @@ std::size_t countWords(std::string_view text) {
   std::size_t words = 0;
   while (!takeWordOfText(text).empty()) ++words;
   return words;
-}
-
-/// Pieces of about equal size that end where lines end.
-std::vector<std::string_view> splitAtLineEnds(std::string_view text, char line_end) {
-  std::vector<std::string_view> pieces;
-  while (!text.empty()) {
-    std::size_t size = text.size();
-    if (size > kPieceBytes) {
-      const std::size_t end = text.find(line_end, kPieceBytes);
-      if (end != std::string_view::npos) size = end + 1;
-    }
-    pieces.push_back(text.substr(0, size));
-    text.remove_prefix(size);
-  }
-  return pieces;
 }
 
 /// Bits 0x00RRGGBB written as an integer, or as the float that has these bits. A word of digits is
@@ -110,8 +97,40 @@ bool isPoint(const PointBlock& block, std::size_t i) {
 }  // namespace
 
 AsciiSource::AsciiSource(AsciiLayout layout) : layout_(std::move(layout)) {
-  const auto texts = splitAtLineEnds(layout_.text, layout_.line_end);
+  const auto texts = splitAtLineEnds();
   if (!takeAsWords(texts)) takeAsLines(texts);
+}
+
+void AsciiSource::release() const {
+  if (layout_.file != nullptr) layout_.file->release();
+}
+
+/// Pieces of about equal size that end where lines end.
+std::vector<std::string_view> AsciiSource::splitAtLineEnds() const {
+  std::vector<std::string_view> pieces;
+  for (std::string_view text = layout_.text; !text.empty();) {
+    std::size_t size = text.size();
+    if (size > kPieceBytes) {
+      const std::size_t end = text.find(layout_.line_end, kPieceBytes);
+      if (end != std::string_view::npos) size = end + 1;
+    }
+    pieces.push_back(text.substr(0, size));
+    text.remove_prefix(size);
+    if (pieces.size() % kHeld == 0) release();
+  }
+  return pieces;
+}
+
+template <typename Count>
+std::vector<std::size_t> AsciiSource::countedIn(const std::vector<std::string_view>& texts,
+                                                const Count& count) const {
+  std::vector<std::size_t> counts(texts.size());
+  for (std::size_t begin = 0; begin < texts.size(); begin += kHeld) {
+    parallelFor(std::min(kHeld, texts.size() - begin),
+                [&](std::size_t i) { counts[begin + i] = count(texts[begin + i]); });
+    release();
+  }
+  return counts;
 }
 
 std::optional<std::size_t> AsciiSource::wordsPerPoint() const {
@@ -127,8 +146,7 @@ bool AsciiSource::takeAsWords(const std::vector<std::string_view>& texts) {
   std::string_view first;
   while (!rest.empty() && !hasWords(first)) first = takeLine(rest, layout_.line_end);
   if (splitWords(first).size() == *each) return false;
-  std::vector<std::size_t> counts(texts.size());
-  parallelFor(texts.size(), [&](std::size_t i) { counts[i] = countWords(texts[i]); });
+  const std::vector<std::size_t> counts = countedIn(texts, countWords);
   std::size_t words = 0;
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -148,9 +166,8 @@ bool AsciiSource::takeAsWords(const std::vector<std::string_view>& texts) {
 }
 
 void AsciiSource::takeAsLines(const std::vector<std::string_view>& texts) {
-  std::vector<std::size_t> counts(texts.size());
-  parallelFor(texts.size(),
-              [&](std::size_t i) { counts[i] = countLines(texts[i], layout_.line_end); });
+  const std::vector<std::size_t> counts =
+      countedIn(texts, [&](std::string_view text) { return countLines(text, layout_.line_end); });
   if (layout_.points == 0) {
     layout_.points = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   }

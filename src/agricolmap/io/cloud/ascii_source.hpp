@@ -38,6 +38,8 @@ struct AsciiLayout {
   char separator = ' ';                          ///< of words: any blanks, or this one
   bool decimal_comma = false;                    ///< "1,5" is one and a half
   std::string_view told_by = "the header says";  ///< how long lines are
+  /// What the text lies in, to be released while it is looked through; none where it is in memory.
+  const MappedFile* file = nullptr;
 };
 
 class AsciiSource : public PointSource {
@@ -62,6 +64,12 @@ class AsciiSource : public PointSource {
     std::string_view text;
     std::size_t first_point = 0;
   };
+  std::vector<std::string_view> splitAtLineEnds() const;
+  /// What `count` says of each of the texts.
+  template <typename Count>
+  std::vector<std::size_t> countedIn(const std::vector<std::string_view>& texts,
+                                     const Count& count) const;
+  void release() const;
   /// Words per point, where that is always the same.
   std::optional<std::size_t> wordsPerPoint() const;
   /// Makes pieces of words when that is what the text is.

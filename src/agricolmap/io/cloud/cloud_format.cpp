@@ -5,6 +5,7 @@
 #include "agricolmap/io/cloud/xyz_columns.hpp"
 #include "agricolmap/io/las/las_header.hpp"
 #include "agricolmap/io/text/foreign_file.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 #include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
@@ -81,7 +82,9 @@ std::optional<CloudFormat> formatByContent(std::string_view bytes) {
   if (looksLikePcd(text)) return CloudFormat::kPcd;
   if (looksLikeLas(bytes)) return isCompressedLas(bytes) ? CloudFormat::kLaz : CloudFormat::kLas;
   // Others have lines of numbers, too.
-  if (looksLikeXyz(text) && describeForeign(text).empty()) return CloudFormat::kXyz;
+  if (looksLikeXyz(text) && describeForeign(text).empty() && !looksLikeMatrix(bytes)) {
+    return CloudFormat::kXyz;
+  }
   return std::nullopt;
 }
 

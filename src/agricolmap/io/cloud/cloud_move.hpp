@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -21,8 +22,9 @@ struct CloudMove {
   Crs crs;                     ///< of the target; empty: as before
 };
 
-/// Called now and then, from one thread at a time, with how many points are written.
-using CopyProgress = std::function<void(std::uint64_t points)>;
+/// Called now and then, from one thread at a time, with how many points of how many are written or,
+/// where they pass by several times, were seen in the present pass.
+using CopyProgress = std::function<void(std::size_t points, std::size_t of)>;
 
 struct CopiedCloud {
   std::uint64_t points = 0;

@@ -15,6 +15,7 @@
 #include "agricolmap/io/las/las_reader.hpp"
 #include "agricolmap/io/text/foreign_file.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
+#include "agricolmap/io/text/matrix_file.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -22,6 +23,10 @@ namespace {
 std::string remedyFor(std::string_view bytes) {
   std::string known = describeForeign(bytes);
   if (!known.empty()) return known;
+  if (looksLikeMatrix(bytes)) {
+    return "it is a 4x4 matrix, as transformations are written; give the cloud itself; were these "
+           "four points, a first line would have to name their columns, as 'x y z intensity'";
+  }
   return "known are LAS, LAZ, PLY, PCD and text with lines 'x y z' or 'x y z r g b'";
 }
 
@@ -74,7 +79,6 @@ PointFile openPoints(const MappedFile& file, const std::string& name, const Read
     throw InputError(fmt::format("{}: not a point cloud: {}", name, remedyFor(file.text())));
   }
   PointFile opened = openAs(*format, file, name, options);
-  opened.file = &file;
   if (options.map != nullptr) {
     opened.source = std::make_unique<MappedSource>(std::move(opened.source), *options.map);
   }

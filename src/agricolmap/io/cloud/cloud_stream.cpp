@@ -73,10 +73,17 @@ class SpillWriter {
   std::vector<Rgb> rgb_;
 };
 
+/// What becomes of decoded points that are dear.
+enum class Dear { kSpilled, kForgotten };
+
 class FileStream : public PointStream {
  public:
-  FileStream(std::unique_ptr<MappedFile> mapped, PointFile file, const StreamOptions& options)
-      : mapped_(std::move(mapped)), file_(std::move(file)), on_pass_(options.on_pass) {
+  FileStream(std::unique_ptr<MappedFile> mapped, PointFile file, const StreamOptions& options,
+             Dear dear)
+      : mapped_(std::move(mapped)),
+        file_(std::move(file)),
+        on_pass_(options.on_pass),
+        spills_(dear == Dear::kSpilled && file_.source->dear()) {
     const FirstLook first = firstLook(*file_.source);
     taking_ = first.taking;
     std::vector<ChunkFacts> chunks = lookAtAll();
@@ -125,6 +132,7 @@ class FileStream : public PointStream {
   std::unique_ptr<MappedFile> mapped_;
   PointFile file_;
   std::function<void(std::size_t, std::size_t)> on_pass_;
+  bool spills_;
   Taking taking_;
   std::unique_ptr<PointSpill> spill_;  ///< where decoding is dear
   std::vector<Piece> pieces_;
@@ -135,7 +143,7 @@ class FileStream : public PointStream {
 /// The first pass.
 std::vector<ChunkFacts> FileStream::lookAtAll() {
   const PointSource& source = *file_.source;
-  if (source.dear()) {
+  if (spills_) {
     spill_.reset();  // there need not be room for both
     spill_ = std::make_unique<PointSpill>(source.points(), hasChannels(), file_.name);
   }
@@ -255,11 +263,18 @@ std::unique_ptr<PointStream> streamCloud(const std::filesystem::path& path,
   auto mapped = std::make_unique<MappedFile>(path);
   PointFile file = openPoints(*mapped, path.string(), options.read);
   if (file.source->points() > options.keep) {
-    return std::make_unique<FileStream>(std::move(mapped), std::move(file), options);
+    return std::make_unique<FileStream>(std::move(mapped), std::move(file), options,
+                                        Dear::kSpilled);
   }
   Cloud cloud = assembleCloud(file);
   cloud.crs = options.crs;
   return keptStream(std::move(cloud));
+}
+
+CloudFacts factsOfFile(const std::filesystem::path& path, const StreamOptions& options) {
+  auto mapped = std::make_unique<MappedFile>(path);
+  PointFile file = openPoints(*mapped, path.string(), options.read);
+  return FileStream(std::move(mapped), std::move(file), options, Dear::kForgotten).facts();
 }
 
 std::unique_ptr<PointStream> keptStream(Cloud cloud) {

@@ -27,6 +27,14 @@ struct StreamOptions {
 std::unique_ptr<PointStream> streamCloud(const std::filesystem::path& path,
                                          const StreamOptions& options = {});
 
+/// Enough to be kept where a cloud passes by a few times only: 60 MiB.
+inline constexpr std::size_t kKeepLittle = std::size_t{1} << 22;
+
+/// What a stream of the file would say of itself, after one look at all of its points, two where
+/// colours or heights turn out otherwise than they seemed; nothing is kept or spilled. Throws
+/// InputError as readCloud does.
+CloudFacts factsOfFile(const std::filesystem::path& path, const StreamOptions& options = {});
+
 /// The points of a cloud that is kept, by the stream.
 std::unique_ptr<PointStream> keptStream(Cloud cloud);
 

@@ -63,6 +63,10 @@ void expectSameAsRead(const std::filesystem::path& path, const CoordinateMap* ma
     EXPECT_EQ(facts.dropped_points, cloud.dropped_points);
     EXPECT_EQ(facts.warnings, cloud.warnings);
     EXPECT_EQ(facts.fields, cloud.fields);
+    const CloudFacts alone = factsOfFile(path, options);
+    EXPECT_EQ(alone.origin, cloud.origin);
+    EXPECT_EQ(alone.points, cloud.size());
+    EXPECT_EQ(alone.warnings, cloud.warnings);
     EXPECT_EQ(stream->box().min, boundingBox(cloud).min);
     EXPECT_EQ(stream->box().max, boundingBox(cloud).max);
     for (int pass = 0; pass < 2; ++pass) {
@@ -251,6 +255,7 @@ TEST(CloudStream, DecodedPointsAreKeptInAFileWithoutAName) {
     EXPECT_EQ(gathered(*stream).size(), 100'000U);
   }
   const TemporaryFolder none((room / "none").string());
+  EXPECT_EQ(factsOfFile(dir / "cloud.laz").points, 100'000U);  // which needs no room
   expectError<OutputError>([&] { streamCloud(dir / "cloud.laz", kStreamed); },
                            {"cloud.laz", "none", "TMPDIR", "No such file"});
 }

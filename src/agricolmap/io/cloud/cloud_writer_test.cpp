@@ -1,7 +1,16 @@
 #include "agricolmap/io/cloud/cloud_writer.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/test_support.hpp"
 
@@ -24,6 +33,14 @@ Cloud randomCloud(std::size_t points, const Eigen::Vector3d& origin) {
   return cloud;
 }
 
+std::vector<CloudFormat> formats() {
+  std::vector<CloudFormat> all{CloudFormat::kPly, CloudFormat::kPcd, CloudFormat::kLas};
+#ifdef AGRICOLMAP_HAS_LASZIP
+  all.insert(all.end(), {CloudFormat::kLaz, CloudFormat::kCopc});
+#endif
+  return all;
+}
+
 TEST(CloudWriter, RoundTripsUtmCoordinates) {
   const TempDir dir;
   const Cloud cloud = randomCloud(200000, {500000, 5000000, 300});
@@ -43,11 +60,8 @@ TEST(CloudWriter, AllFormatsRoundTripInUtm) {
   const TempDir dir;
   Cloud cloud = randomCloud(70000, {500000, 5400000, 300});
   cloud.crs = {"somewhere", "PROJCS[\"somewhere\"]"};
-  for (const CloudFormat format :
-       {CloudFormat::kPly, CloudFormat::kPcd, CloudFormat::kLas, CloudFormat::kLaz}) {
-#ifndef AGRICOLMAP_HAS_LASZIP
-    if (format == CloudFormat::kLaz) continue;
-#endif
+  for (const CloudFormat format : formats()) {
+    if (format == CloudFormat::kCopc) continue;  // in another order, and told as LAZ
     SCOPED_TRACE(endingOf(format));
     const auto path = dir / ("out." + endingOf(format));
     writeCloud(path, cloud, format);
@@ -57,12 +71,82 @@ TEST(CloudWriter, AllFormatsRoundTripInUtm) {
     EXPECT_TRUE(back.warnings.empty());
     EXPECT_EQ(back.rgb, cloud.rgb);
     ASSERT_EQ(back.size(), cloud.size());
-    const bool las = format == CloudFormat::kLas || format == CloudFormat::kLaz;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const Eigen::Vector3d error = back.filePoint(i) - cloud.filePoint(i);
-      ASSERT_LT(error.cwiseAbs().maxCoeff(), las ? 0.000505 : 4e-6);
+      ASSERT_LT(error.cwiseAbs().maxCoeff(), isLas(format) ? 0.000505 : 4e-6);
     }
   }
+}
+
+/// Turned, shifted and bent.
+PointMove someMove() {
+  const Eigen::Affine3d affine(Eigen::Translation3d(3.0, -2.0, 0.5) *
+                               Eigen::AngleAxisd(1e-6, Eigen::Vector3d::UnitZ()));
+  return {affine, [](const Eigen::Vector3d& point) {
+            return Eigen::Vector3d(0.0, 0.1 * std::sin(point.x()), 0.0);
+          }};
+}
+
+/// What is written of points that pass by is, byte for byte, what is written of them when they are
+/// kept: in every format, on any number of threads.
+void expectSameAsKept(const std::filesystem::path& source, const std::vector<CloudFormat>& targets,
+                      const std::vector<PointMove>& moves) {
+  const TempDir dir;
+  const Crs crs{"somewhere", "PROJCS[\"somewhere\"]"};
+  Cloud cloud = readCloud(source);
+  cloud.crs = crs;
+  for (const CloudFormat format : targets) {
+    for (const PointMove& move : moves) {
+      writeCloud(dir / "kept", cloud, format, move);
+      for (const int threads : {1, 3}) {
+        SCOPED_TRACE(source.filename().string() + " to " + endingOf(format));
+        const ThreadLimit limit(threads);
+        const auto points = streamCloud(source, {{}, 0, {}, crs});
+        writeCloud(dir / "passing", *points, format, move);
+        EXPECT_TRUE(test::contentOf(dir / "passing") == test::contentOf(dir / "kept"));
+      }
+    }
+  }
+}
+
+TEST(CloudWriter, PointsThatPassByAreWrittenAsThoseThatAreKept) {
+  const TempDir dir;
+  Cloud cloud = randomCloud(20000, {500000, 5400000, 300});
+  std::string text;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d point = cloud.filePoint(i);
+    for (const double value : {point.x(), point.y(), point.z()})
+      text += fmt::format("{:.3f} ", value);
+    // Colours that a first look at the file takes for those of 8 bit.
+    text += fmt::format("{} 3 4\n", i > 19900 ? 60000 : 90);
+  }
+  const std::vector<PointMove> moves{PointMove(), someMove()};
+  expectSameAsKept(dir.write("lines.txt", text), formats(), moves);
+  cloud.xyz[7].x() = std::numeric_limits<float>::quiet_NaN();
+  cloud.xyz[17000].y() = 3e4F;
+  for (const CloudFormat format : formats()) {
+    if (isLas(format)) cloud.xyz[7].x() = 0.0F;
+    const auto source = dir / ("source." + endingOf(format));
+    writeCloud(source, cloud, format);
+    expectSameAsKept(source, formats(), moves);
+  }
+  cloud.rgb.clear();
+  writePly(dir / "grey.ply", cloud);
+  expectSameAsKept(dir / "grey.ply", formats(), moves);
+}
+
+TEST(CloudWriter, SoAreThoseOfSeveralBatches) {
+  const TempDir dir;
+  Cloud cloud;
+  cloud.origin = {500000, 5400000, 300};
+  for (std::size_t i = 0; i < PointStream::kBatch + 17001; ++i) {
+    cloud.xyz.emplace_back(0.01F * static_cast<float>(i / 1000),
+                           0.01F * static_cast<float>(i % 1000), 0.0F);
+  }
+  writePly(dir / "large.ply", cloud);
+  std::vector<CloudFormat> targets{CloudFormat::kPly, CloudFormat::kLas};
+  if (formats().back() == CloudFormat::kCopc) targets.push_back(CloudFormat::kCopc);
+  expectSameAsKept(dir / "large.ply", targets, {PointMove()});
 }
 
 TEST(CloudWriter, FormatsAreKnownByTheirEndings) {

@@ -1,8 +1,10 @@
 // Files that are no clouds say what they are and what to do.
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
 #include "agricolmap/io/test_support.hpp"
 #include "agricolmap/io/text/matrix_file.hpp"
@@ -60,6 +62,31 @@ TEST(ForeignFiles, AreNamedWhereNumbersAreWanted) {
   const auto path = dir.write("prior.txt", lfs.content);
   expectError<InputError>([&] { readMatrix(path); }, {"prior.txt", lfs.what, lfs.remedy});
   expectError<InputError>([&] { readPath(path); }, {"prior.txt", lfs.what, lfs.remedy});
+}
+
+TEST(ForeignFiles, AMatrixIsNoCloudOfFourPoints) {
+  const TempDir dir;
+  const std::string rows = "1 0 0 500000\n0 1 0 5400000\n0 0 1 3.5\n";
+  for (const std::string& text :
+       {"# p_fixed = M * p_moving\n" + rows + "0 0 0 1\n", rows + "0.0,0.0,0.0,1e0",
+        std::string("[[1, 0, 0, 5],\n [0, 1, 0, 6],\n [0, 0, 1, 7],\n [0, 0, 0, 1]]\n"),
+        std::string("1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1\n")}) {
+    const auto path = dir.write("transform.txt", text);
+    EXPECT_EQ(formatByContent(text), std::nullopt) << text;
+    expectError<InputError>([&] { readCloud(path); }, {"transform.txt", "4x4 matrix", "name"});
+    EXPECT_EQ(readMatrix(path)(2, 2), 1.0);
+  }
+}
+
+TEST(ForeignFiles, FourPointsAreACloud) {
+  const TempDir dir;
+  const std::string three = "1 0 0 5\n0 1 0 6\n0 0 1 7\n";
+  for (const std::string& text :
+       {three + "0 0 0 2\n", three + "0 0 1 1\n", "x y z intensity\n" + three + "0 0 0 1\n",
+        std::string("1 0 0\n0 1 0\n0 0 1\n0 0 0\n")}) {
+    EXPECT_EQ(readCloud(dir.write("four.xyz", text)).size(), 4U) << text;
+  }
+  EXPECT_EQ(readCloud(dir.write("five.xyz", three + "0 0 0 1\n1 1 1 1\n")).size(), 5U);
 }
 
 TEST(ForeignFiles, GaussianSplatsAreTold) {

@@ -6,14 +6,11 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_stream.hpp"
 #include "agricolmap/io/cloud/cloud_writer.hpp"
-#include "agricolmap/io/cloud/pcd_header.hpp"
-#include "agricolmap/io/cloud/ply_header.hpp"
 #include "agricolmap/io/cloud/point_source.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
-#include "agricolmap/io/las/las_header.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
-#include "agricolmap/io/text/text.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -23,6 +20,18 @@ namespace {
       "{}: {} of its {} points lie more than {:.0f} km from the strip that was registered; check "
       "its units and its coordinate system",
       file, far, points, kMaxFromOrigin / 1000.0));
+}
+
+/// Where formats have coordinates and colours alone in common.
+CopiedCloud rewriteFile(const std::filesystem::path& from, const OutputPath& to, CloudFormat format,
+                        const CloudMove& move, const CopyProgress& progress) {
+  const auto points = streamCloud(from, {{true, move.map}, kKeepLittle, progress, move.crs});
+  const CloudFacts& facts = points->facts();
+  if ((facts.origin - move.origin).cwiseAbs().maxCoeff() > kMaxFromOrigin) {
+    refuseFar(from.string(), facts.points, facts.points);
+  }
+  writeCloud(to, *points, format, move.target_from_file);
+  return {facts.points, facts.dropped_points, facts.warnings};
 }
 
 }  // namespace
@@ -36,24 +45,6 @@ CloudFormat formatOf(const std::filesystem::path& file) {
   if (format) return *format;
   readCloud(file, {false, nullptr});  // says what it is instead
   throw InputError(fmt::format("{}: is no cloud", file.string()));
-}
-
-std::uint64_t pointsOf(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  const std::string name = file.string();
-  switch (formatOf(file)) {
-    case CloudFormat::kPcd:
-      return parsePcdHeader(withoutMark(mapped.text()), name).points;
-    case CloudFormat::kPly:
-      return vertexOf(parsePlyHeader(withoutMark(mapped.text()), name), name).count;
-    case CloudFormat::kXyz:
-      return 0;
-    case CloudFormat::kLas:
-    case CloudFormat::kLaz:
-    case CloudFormat::kCopc:
-      break;
-  }
-  return parseLasHeader(mapped.bytes(), name).points;
 }
 
 void noteTally(const MoveTally& tally, const std::string& file, CopiedCloud& copied) {
@@ -90,13 +81,7 @@ CopiedCloud moveFile(const std::filesystem::path& from, const OutputPath& to, Cl
   if (listed) {
     if (auto copied = movePly(from, to, move, progress)) return *std::move(copied);
   }
-  Cloud cloud = readCloud(from, {true, move.map});
-  if ((cloud.origin - move.origin).cwiseAbs().maxCoeff() > kMaxFromOrigin) {
-    refuseFar(from.string(), cloud.size(), cloud.size());
-  }
-  cloud.crs = move.crs;
-  writeCloud(to, cloud, format, move.target_from_file);
-  CopiedCloud copied{cloud.size(), cloud.dropped_points, std::move(cloud.warnings)};
+  CopiedCloud copied = rewriteFile(from, to, format, move, progress);
   if (listed) {
     copied.warnings.push_back(fmt::format(
         "{}: its vertices have lists, or elements with lists before them: nothing but coordinates "

@@ -19,13 +19,10 @@ bool keepsAttributes(CloudFormat from, CloudFormat to);
 /// The format of a cloud's file. Throws InputError when it is none that is known.
 CloudFormat formatOf(const std::filesystem::path& file);
 
-/// How many points a cloud's file announces; 0 for text, which announces none. Throws InputError.
-std::uint64_t pointsOf(const std::filesystem::path& file);
-
 /// Writes the points of `from`, moved, in `format`. Where attributes are kept, PLY and PCD keep all
 /// points, those that are not finite as they stand, coordinates in the types that they have unless
 /// these are too coarse where the points come to lie, and normals are turned; text stays text.
-/// Else coordinates and colours are read, all in memory, and written. Throws InputError when most
+/// Else coordinates and colours pass by (streamCloud) and are written. Throws InputError when most
 /// of the points are far from where the move belongs, and as readers and writers do.
 CopiedCloud moveFile(const std::filesystem::path& from, const OutputPath& to, CloudFormat format,
                      const CloudMove& move, const CopyProgress& progress = {});

@@ -7,6 +7,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/cloud/point_source.hpp"
 #include "agricolmap/io/test_support.hpp"
 
@@ -214,6 +215,17 @@ TEST_F(MoveFile, WhatIsFarFromTheStripIsRefused) {
   }
 }
 
+TEST_F(MoveFile, OtherFormatsGetWhatReadingGives) {
+  const std::string ply = plyOf<double>("double", somePoints(3000), false, std::string(1, '\0'));
+  CloudMove move = moveBy({1.0, 2.0, 3.0});
+  move.crs = {"somewhere", "PROJCS[\"somewhere\"]"};
+  EXPECT_EQ(moved(ply, move, CloudFormat::kLas).points, 3000U);
+  Cloud cloud = readCloud(folder_ / "in");
+  cloud.crs = move.crs;
+  writeCloud(folder_ / "wanted", cloud, CloudFormat::kLas, move.target_from_file);
+  EXPECT_TRUE(out() == contentOf(folder_ / "wanted"));
+}
+
 TEST_F(MoveFile, WithoutCoordinatesThereIsNothingToMove) {
   test::expectError<InputError>(
       [&] {
@@ -226,8 +238,7 @@ TEST_F(MoveFile, WithoutCoordinatesThereIsNothingToMove) {
 TEST_F(MoveFile, FieldsAreFoundAsReadersFindThem) {
   const std::string head = "ply\nformat ascii 1.0\nelement Vertex 1\nproperty float X\n";
   const std::string rest = "property float Y\nproperty float Z\nend_header\n1 2 3\n";
-  moved(head + rest, {});
-  EXPECT_EQ(pointsOf(folder_ / "in"), 1U);
+  EXPECT_EQ(moved(head + rest, {}).points, 1U);
   test::expectError<InputError>([&] { moved(head + "property float X\n" + rest, {}); },
                                 {"'x' is there twice"});
 }

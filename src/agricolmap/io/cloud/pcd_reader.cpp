@@ -85,6 +85,7 @@ void openAscii(const PcdHeader& header, const Roles& roles, std::string_view tex
   AsciiLayout layout;
   layout.name = file.name;
   layout.text = text;
+  layout.file = file.file;
   layout.points = header.points;
   layout.line_end = header.line_end;
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
@@ -146,6 +147,7 @@ PointFile openPcd(const MappedFile& file, const std::string& name, const ReadOpt
   const PcdHeader header = parsePcdHeader(text, name);
   PointFile opened;
   opened.name = name;
+  opened.file = &file;
   opened.fields = fieldsOf(header);
   openData(header, findRoles(header, name, options), text.substr(header.bytes), opened);
   warnOfViewpoint(header, opened);

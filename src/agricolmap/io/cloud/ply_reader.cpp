@@ -265,9 +265,11 @@ void openAscii(const PlyHeader& header, const VertexLayout& layout, std::string_
     }
   }
   const bool last = isLast(header, *layout.vertex);
-  auto source = std::make_unique<AsciiSource>(AsciiLayout{file.name, text, layout.vertex->count,
-                                                          asciiColumns(layout), layout.colourKind(),
-                                                          header.line_end, last});
+  AsciiLayout ascii{
+      file.name,       text, layout.vertex->count, asciiColumns(layout), layout.colourKind(),
+      header.line_end, last};
+  ascii.file = file.file;
+  auto source = std::make_unique<AsciiSource>(std::move(ascii));
   if (last) warnOfRest(source->extraLines(), "lines", file);
   file.source = std::move(source);
 }
@@ -281,6 +283,7 @@ PointFile openPly(const MappedFile& file, const std::string& name, const ReadOpt
   const std::string_view body = text.substr(header->bytes);
   PointFile opened;
   opened.name = name;
+  opened.file = &file;
   opened.fields = fieldsOf(*layout.vertex);
   if (header->format == PlyFormat::kAscii) {
     openAscii(*header, layout, body, opened);

@@ -147,7 +147,7 @@ MoveTally writeMoved(const RecordLayout& layout, const PointMover& mover, const 
     MoveTally tally;
   };
   MoveTally tally;
-  std::uint64_t written = 0;
+  std::size_t written = 0;
   std::size_t unforgotten = 0;
   writeBehind<Piece>((count + kPiece - 1) / kPiece, kTogether,
                      [&](std::size_t i, Piece& piece) {
@@ -164,7 +164,7 @@ MoveTally writeMoved(const RecordLayout& layout, const PointMover& mover, const 
                        if (unforgotten < kForgetAfter) return;
                        unforgotten = 0;
                        forget();
-                       if (progress) progress(written);
+                       if (progress) progress(written, count);
                      });
   return tally;
 }

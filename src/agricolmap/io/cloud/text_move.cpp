@@ -193,7 +193,7 @@ MoveTally writeMoved(std::string_view& text, const TextItem& item, const PointFi
       sink.write(batch[i].moved);
       tally += batch[i].tally;
     }
-    if (progress) progress(begin);
+    if (progress) progress(begin, count);
   }
   return tally;
 }

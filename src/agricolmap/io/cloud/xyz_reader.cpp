@@ -14,6 +14,7 @@ PointFile openXyz(const MappedFile& file, const std::string& name, const ReadOpt
   AsciiLayout layout;
   layout.name = name;
   layout.text = text.substr(found.begin);
+  layout.file = &file;
   layout.columns = found.columns;
   layout.line_end = found.line_end;
   layout.separator = found.separator;
@@ -28,6 +29,7 @@ PointFile openXyz(const MappedFile& file, const std::string& name, const ReadOpt
   }
   PointFile opened;
   opened.name = name;
+  opened.file = &file;
   opened.fields = found.fields;
   auto source = std::make_unique<AsciiSource>(std::move(layout));
   warnOfRest(source->extraLines(), "lines", opened);

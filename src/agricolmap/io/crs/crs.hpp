@@ -58,6 +58,11 @@ CommonFrame frameIn(const FileCrs& cloud, const std::string& target);
 /// plane.
 bool isProjected(const Crs& crs);
 
+/// Whether they are metres, x, y and heights.
+inline bool isInMetres(const Crs& crs) {
+  return isProjected(crs) && crs.horizontal_unit == 1.0 && crs.vertical_unit == 1.0;
+}
+
 /// Throws InputError when a metre of the coordinate system at (x, y) is not one on the ground, to
 /// 1 %: Web Mercator is wrong by the cosine of the latitude. Says nothing where `crs` is empty.
 void checkGroundScale(const std::string& name, const Crs& crs, const Eigen::Vector2d& at);

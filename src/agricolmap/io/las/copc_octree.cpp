@@ -1,6 +1,7 @@
 #include "agricolmap/io/las/copc_octree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,18 +23,20 @@ void forEachChunk(const LasFeed& feed, const Visit& visit, const Take& take) {
     std::vector<std::byte> records;
     Result result;
   };
-  std::vector<Slot> slots(std::min(kTogether, feed.chunks()));
-  for (std::size_t begin = 0; begin < feed.chunks(); begin += kTogether) {
-    const std::size_t count = std::min(kTogether, feed.chunks() - begin);
-    parallelFor(count, [&](std::size_t i) {
-      feed.load(begin + i, slots[i].records);
-      slots[i].result = Result();
-      visit(slots[i].records, slots[i].result);
-    });
-    throwIfInterrupted();
-    for (std::size_t i = 0; i < count; ++i) take(slots[i].result);
-    feed.forget();
-  }
+  std::array<Slot, kTogether> slots;
+  feed.pass([&](std::size_t chunks, const LasFeed::Load& load) {
+    for (std::size_t begin = 0; begin < chunks; begin += kTogether) {
+      const std::size_t count = std::min(kTogether, chunks - begin);
+      parallelFor(count, [&](std::size_t i) {
+        load(begin + i, slots[i].records);
+        slots[i].result = Result();
+        visit(slots[i].records, slots[i].result);
+      });
+      throwIfInterrupted();
+      for (std::size_t i = 0; i < count; ++i) take(slots[i].result);
+      feed.forget();
+    }
+  });
 }
 
 /// Bits of a node's cell, one of each axis after the other, behind a one: a number for every node.

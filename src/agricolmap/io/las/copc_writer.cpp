@@ -63,46 +63,56 @@ std::vector<std::byte> hierarchyOf(std::vector<Entry> entries) {
   return bytes;
 }
 
+/// Records of a chunk, those of each part together and in their order.
+struct SortedRecords {
+  std::vector<std::byte> records;
+  std::vector<std::pair<std::size_t, std::size_t>> counts;  ///< of the parts that it has
+};
+
+void sortByPart(const std::vector<std::byte>& records, const LasOutline& outline,
+                const CopcCube& cube, const CopcParts& parts, SortedRecords& sorted) {
+  const std::size_t length = outline.layout.length;
+  std::vector<std::pair<std::size_t, std::size_t>> order;  // part, index
+  for (std::size_t i = 0; i * length < records.size(); ++i) {
+    order.emplace_back(parts.partOf(cube.place(outline, &records[i * length])), i);
+  }
+  std::sort(order.begin(), order.end());
+  sorted.counts.clear();
+  sorted.records.resize(records.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto [part, from] = order[i];
+    if (sorted.counts.empty() || sorted.counts.back().first != part) {
+      sorted.counts.emplace_back(part, 0);
+    }
+    ++sorted.counts.back().second;
+    std::copy_n(&records[from * length], length, &sorted.records[i * length]);
+  }
+}
+
 /// Lays all records into the scratch file, those of a part together and in their order.
 void sortIntoParts(const LasFeed& feed, const CopcCube& cube, const CopcParts& parts,
                    ScratchFile& scratch) {
   const std::size_t length = feed.outline().layout.length;
-  struct Sorted {
-    std::vector<std::byte> records;
-    std::vector<std::pair<std::size_t, std::size_t>> counts;  ///< of the parts that it has
-  };
   std::vector<std::uint64_t> written(parts.parts().size(), 0);
-  writeBehind<Sorted>(
-      feed.chunks(), kChunksTogether,
-      [&](std::size_t chunk, Sorted& sorted) {
-        std::vector<std::byte> records;
-        feed.load(chunk, records);
-        std::vector<std::pair<std::size_t, std::size_t>> order;  // part, index
-        for (std::size_t i = 0; i * length < records.size(); ++i) {
-          order.emplace_back(parts.partOf(cube.place(feed.outline(), &records[i * length])), i);
-        }
-        std::sort(order.begin(), order.end());
-        sorted.counts.clear();
-        sorted.records.resize(records.size());
-        for (std::size_t i = 0; i < order.size(); ++i) {
-          const auto [part, from] = order[i];
-          if (sorted.counts.empty() || sorted.counts.back().first != part) {
-            sorted.counts.emplace_back(part, 0);
+  feed.pass([&](std::size_t chunks, const LasFeed::Load& load) {
+    writeBehind<SortedRecords>(
+        chunks, kChunksTogether,
+        [&](std::size_t chunk, SortedRecords& sorted) {
+          std::vector<std::byte> records;
+          load(chunk, records);
+          sortByPart(records, feed.outline(), cube, parts, sorted);
+        },
+        [&](const SortedRecords& sorted) {
+          std::size_t done = 0;
+          for (const auto& [part, count] : sorted.counts) {
+            const std::uint64_t at = parts.parts()[part].first + written[part];
+            scratch.write(at * length, std::span(sorted.records).subspan(done, count * length));
+            written[part] += count;
+            done += count * length;
           }
-          ++sorted.counts.back().second;
-          std::copy_n(&records[from * length], length, &sorted.records[i * length]);
-        }
-      },
-      [&](const Sorted& sorted) {
-        std::size_t done = 0;
-        for (const auto& [part, count] : sorted.counts) {
-          const std::uint64_t at = parts.parts()[part].first + written[part];
-          scratch.write(at * length, std::span(sorted.records).subspan(done, count * length));
-          written[part] += count;
-          done += count * length;
-        }
-        feed.forget();
-      });
+          feed.forget();
+        });
+  });
 }
 
 /// Compresses nodes and keeps the list of them.
@@ -194,7 +204,7 @@ std::uint64_t writeCopc(const LasFeed& feed, const OutputPath& to, const CopyPro
     const CopcParts parts(feed, cube, kPartBytes / feed.outline().layout.length);
     sortIntoParts(feed, cube, parts, scratch);
     writeNodes(feed.outline(), cube, parts, scratch, nodes, [&] {
-      if (progress) progress(writer.points());
+      if (progress) progress(writer.points(), feed.points());
     });
   }
   std::vector<Entry> entries = nodes.entries();

@@ -13,6 +13,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/io/cloud/cloud_reader.hpp"
+#include "agricolmap/io/cloud/cloud_writer.hpp"
 #include "agricolmap/io/las/copc_nodes.hpp"
 #include "agricolmap/io/las/copc_octree.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
@@ -257,13 +258,26 @@ TEST_F(CopcFile, CloudsOfOtherFormatsBecomeCopc) {
                            static_cast<float>(random.uniform(0.0, 9.0)), 0.0F);
     cloud.rgb.push_back({static_cast<std::uint8_t>(i), 1, 2});
   }
-  writeLas(folder_ / "out.copc.laz", cloud, CloudFormat::kCopc);
+  writeCloud(folder_ / "out.copc.laz", cloud, CloudFormat::kCopc);
   const Cloud back = readCloud(folder_ / "out.copc.laz");
   ASSERT_EQ(back.size(), cloud.size());  // one node, so in the same order
   for (std::size_t i = 0; i < back.size(); ++i) {
     EXPECT_LT((back.filePoint(i) - cloud.filePoint(i)).cwiseAbs().maxCoeff(), 0.000501);
     EXPECT_EQ(back.rgb[i], cloud.rgb[i]);
   }
+}
+
+/// All records of a feed, in their order.
+std::vector<std::byte> recordsOf(const LasFeed& feed) {
+  std::vector<std::byte> all;
+  std::vector<std::byte> records;
+  feed.pass([&](std::size_t chunks, const LasFeed::Load& load) {
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+      load(chunk, records);
+      all.insert(all.end(), records.begin(), records.end());
+    }
+  });
+  return all;
 }
 
 TEST(CopcOctree, PartsAreSmallAndHoldAllPoints) {
@@ -286,16 +300,12 @@ TEST(CopcOctree, PartsAreSmallAndHoldAllPoints) {
   EXPECT_EQ(sum, 100001U);
   EXPECT_GT(parts.parts().size(), 3U);
   std::vector<std::uint64_t> found(parts.parts().size(), 0);
-  std::vector<std::byte> records;
-  const std::size_t length = feed->outline().layout.length;
-  for (std::size_t chunk = 0; chunk < feed->chunks(); ++chunk) {
-    feed->load(chunk, records);
-    for (std::size_t at = 0; at < records.size(); at += length) {
-      const CopcPlace place = cube.place(feed->outline(), &records[at]);
-      const std::size_t part = parts.partOf(place);
-      ++found[part];
-      EXPECT_TRUE(parts.parts()[part].key.holds(keyOf(place, 20)));
-    }
+  const std::vector<std::byte> records = recordsOf(*feed);
+  for (std::size_t at = 0; at < records.size(); at += feed->outline().layout.length) {
+    const CopcPlace place = cube.place(feed->outline(), &records[at]);
+    const std::size_t part = parts.partOf(place);
+    ++found[part];
+    EXPECT_TRUE(parts.parts()[part].key.holds(keyOf(place, 20)));
   }
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], parts.parts()[i].points);
 }
@@ -305,12 +315,7 @@ TEST(CopcOctree, PartsMakeTheSameNodesAsTheWhole) {
   const LasBytes file = fieldOf(7, 120000);
   const auto feed = feedOf(folder.write("in.las", file.bytes()), std::nullopt, {}, true);
   const CopcCube cube = cubeOf(*feed, extentOf(*feed));
-  std::vector<std::byte> all;
-  std::vector<std::byte> records;
-  for (std::size_t chunk = 0; chunk < feed->chunks(); ++chunk) {
-    feed->load(chunk, records);
-    all.insert(all.end(), records.begin(), records.end());
-  }
+  const std::vector<std::byte> all = recordsOf(*feed);
   std::map<CopcKey, std::size_t> whole;
   std::map<CopcKey, std::size_t> cut;
   for (const CopcNode& node : copcNodes(all, feed->outline(), cube, {})) {

@@ -25,21 +25,23 @@ std::uint64_t writeFeed(const LasFeed& feed, const OutputPath& to, LasWriter::Po
   LasWriter writer(to, feed.outline(), kind);
   const LasLayout& layout = feed.outline().layout;
   std::size_t unforgotten = 0;
-  writeBehind<Piece>(
-      feed.chunks(), kTogether,
-      [&](std::size_t chunk, Piece& piece) {
-        feed.load(chunk, piece.records);
-        piece.tally = LasTally();
-        piece.tally.add(piece.records.data(), piece.records.size() / layout.length, layout);
-      },
-      [&](const Piece& piece) {
-        writer.write(piece.records.data(), piece.tally.points, piece.tally);
-        unforgotten += piece.records.size();
-        if (unforgotten < kForgetAfter) return;
-        unforgotten = 0;
-        feed.forget();
-        if (progress) progress(writer.points());
-      });
+  feed.pass([&](std::size_t chunks, const LasFeed::Load& load) {
+    writeBehind<Piece>(
+        chunks, kTogether,
+        [&](std::size_t chunk, Piece& piece) {
+          load(chunk, piece.records);
+          piece.tally = LasTally();
+          piece.tally.add(piece.records.data(), piece.records.size() / layout.length, layout);
+        },
+        [&](const Piece& piece) {
+          writer.write(piece.records.data(), piece.tally.points, piece.tally);
+          unforgotten += piece.records.size();
+          if (unforgotten < kForgetAfter) return;
+          unforgotten = 0;
+          feed.forget();
+          if (progress) progress(writer.points(), feed.points());
+        });
+  });
   writer.close();
   return writer.points();
 }
@@ -65,9 +67,9 @@ CopiedCloud copyLas(const std::filesystem::path& from, const OutputPath& to, Clo
   return copied;
 }
 
-void writeLas(const OutputPath& path, const Cloud& cloud, CloudFormat format,
+void writeLas(const OutputPath& path, const PointStream& points, CloudFormat format,
               const PointMove& target_from_file) {
-  writeAs(format, *feedOf(cloud, target_from_file, path.shown()), path, {});
+  writeAs(format, *feedOf(points, target_from_file, path.shown()), path, {});
 }
 
 }  // namespace agricolmap::io

@@ -1,10 +1,11 @@
-// LAS, LAZ and COPC from LAS, LAZ and COPC, all attributes kept, in constant memory.
+// LAS, LAZ and COPC in constant memory: of files of the same kinds, all attributes kept, and of
+// points that pass by.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 
-#include "agricolmap/core/cloud.hpp"
+#include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/io/cloud/cloud_format.hpp"
 #include "agricolmap/io/cloud/cloud_move.hpp"
 #include "agricolmap/io/output/output_path.hpp"
@@ -22,8 +23,10 @@ CopiedCloud copyLas(const std::filesystem::path& from, const OutputPath& to, Clo
                     const std::optional<CloudMove>& move = std::nullopt, const Crs& crs = {},
                     const CopyProgress& progress = {});
 
-/// Writes a cloud, in the coordinates of its file, as LAS 1.4 in millimetres, colours in 16 bit.
-void writeLas(const OutputPath& path, const Cloud& cloud, CloudFormat format,
+/// Writes points, in the coordinates of their file, as LAS 1.4 in millimetres, colours in 16 bit.
+/// COPC takes three passes or four, the others one. Throws as copyLas and the stream do, and
+/// UsageError for points that are more than 2000 km apart.
+void writeLas(const OutputPath& path, const PointStream& points, CloudFormat format,
               const PointMove& target_from_file = {});
 
 }  // namespace agricolmap::io

@@ -73,10 +73,16 @@ class FileFeed : public LasFeed {
   }
 
   std::uint64_t points() const override { return header_.points; }
-  std::size_t chunks() const override { return source_->chunks(); }
+  void pass(const Visit& visit) const override {
+    visit(source_->chunks(),
+          [this](std::size_t chunk, std::vector<std::byte>& records) { load(chunk, records); });
+  }
   void forget() const override { file_.release(); }
 
-  void load(std::size_t chunk, std::vector<std::byte>& records) const override {
+ private:
+  using Block = std::array<std::array<double, kBlock>, 3>;
+
+  void load(std::size_t chunk, std::vector<std::byte>& records) const {
     const std::size_t length = header_.layout.length;
     records.clear();
     source_->decode(chunk, LasWanted::kAll, [&](const std::byte* first, std::size_t count) {
@@ -85,9 +91,6 @@ class FileFeed : public LasFeed {
     if (move_) records.resize(moveRecords(records) * length);
     if (lifted_) records = lifted(records, header_.layout, outline_.layout);
   }
-
- private:
-  using Block = std::array<std::array<double, kBlock>, 3>;
 
   /// Moves records in place and closes the gaps of those that have no place; how many are left.
   std::size_t moveRecords(std::vector<std::byte>& records) const {
@@ -149,44 +152,53 @@ class FileFeed : public LasFeed {
   bool lifted_ = false;
 };
 
-class CloudFeed : public LasFeed {
+class StreamFeed : public LasFeed {
  public:
-  CloudFeed(const Cloud& cloud, PointMove target_from_file, std::string name)
-      : cloud_(cloud), target_from_file_(std::move(target_from_file)), name_(std::move(name)) {
-    outline_ = lasOutline(cloud.hasColour());
-    outline_.offset = target_from_file_(cloud.origin).array().round().matrix();
-    if (!cloud.crs.wkt.empty()) outline_.setCrs(cloud.crs.wkt);
+  StreamFeed(const PointStream& points, PointMove target_from_file, std::string name)
+      : points_(points), target_from_file_(std::move(target_from_file)), name_(std::move(name)) {
+    const CloudFacts& facts = points.facts();
+    outline_ = lasOutline(facts.coloured);
+    outline_.offset = target_from_file_(facts.origin).array().round().matrix();
+    if (!facts.crs.wkt.empty()) outline_.setCrs(facts.crs.wkt);
   }
 
-  std::uint64_t points() const override { return cloud_.size(); }
-  std::size_t chunks() const override { return (cloud_.size() + kPoints - 1) / kPoints; }
+  std::uint64_t points() const override { return points_.facts().points; }
 
-  void load(std::size_t chunk, std::vector<std::byte>& records) const override {
-    const std::size_t begin = chunk * kPoints;
-    const std::size_t count = std::min(kPoints, cloud_.size() - begin);
-    records.assign(count * outline_.layout.length, std::byte{0});
-    for (std::size_t i = 0; i < count; ++i) {
-      store(begin + i, &records[i * outline_.layout.length]);
-    }
+  void pass(const Visit& visit) const override {
+    points_.pass([&](const PointBatch& batch) {
+      visit((batch.size() + kPoints - 1) / kPoints,
+            [&](std::size_t chunk, std::vector<std::byte>& records) {
+              load(batch, chunk * kPoints, records);
+            });
+    });
   }
 
  private:
   static constexpr std::size_t kPoints = std::size_t{1} << 14;
+  static_assert(PointStream::kBatch % kPoints == 0, "batches have whole chunks");
 
-  void store(std::size_t i, std::byte* record) const {
-    if (!outline_.store(target_from_file_(cloud_.filePoint(i)), record)) {
+  void load(const PointBatch& batch, std::size_t begin, std::vector<std::byte>& records) const {
+    const std::size_t count = std::min(kPoints, batch.size() - begin);
+    const std::size_t length = outline_.layout.length;
+    records.assign(count * length, std::byte{0});
+    for (std::size_t i = 0; i < count; ++i) store(batch, begin + i, &records[i * length]);
+  }
+
+  void store(const PointBatch& batch, std::size_t i, std::byte* record) const {
+    const Eigen::Vector3d file_point = points_.facts().origin + batch.xyz[i].cast<double>();
+    if (!outline_.store(target_from_file_(file_point), record)) {
       throw UsageError(name_ + ": its points are more than 2000 km apart, too far for LAS");
     }
     storeLe(record + 14, std::uint8_t{0x11});  // the first of one return
-    if (!cloud_.hasColour()) return;
-    const Rgb colour = cloud_.rgb[i];
+    if (batch.rgb.empty()) return;
+    const Rgb colour = batch.rgb[i];
     constexpr std::uint16_t kWide = 257;
     storeLe(record + *outline_.layout.rgb, static_cast<std::uint16_t>(kWide * colour.r));
     storeLe(record + *outline_.layout.rgb + 2, static_cast<std::uint16_t>(kWide * colour.g));
     storeLe(record + *outline_.layout.rgb + 4, static_cast<std::uint16_t>(kWide * colour.b));
   }
 
-  const Cloud& cloud_;
+  const PointStream& points_;
   PointMove target_from_file_;
   std::string name_;
 };
@@ -199,9 +211,9 @@ std::unique_ptr<LasFeed> feedOf(const std::filesystem::path& file,
   return std::make_unique<FileFeed>(file, move, crs, extended);
 }
 
-std::unique_ptr<LasFeed> feedOf(const Cloud& cloud, const PointMove& target_from_file,
+std::unique_ptr<LasFeed> feedOf(const PointStream& points, const PointMove& target_from_file,
                                 std::string name) {
-  return std::make_unique<CloudFeed>(cloud, target_from_file, std::move(name));
+  return std::make_unique<StreamFeed>(points, target_from_file, std::move(name));
 }
 
 }  // namespace agricolmap::io

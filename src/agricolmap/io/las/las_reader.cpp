@@ -109,6 +109,7 @@ PointFile openLas(const MappedFile& file, const std::string& name, const ReadOpt
   auto points = lasPoints(file.bytes(), header, name);
   PointFile opened;
   opened.name = name;
+  opened.file = &file;
   opened.fields = lasFields(header.layout);
   const std::string extra = extraNames(header);
   if (!extra.empty()) opened.fields += fmt::format(" ({})", extra);

@@ -51,6 +51,16 @@ Eigen::Affine3d matrixFrom(const std::vector<double>& n, const std::filesystem::
   return affineFrom(n, path);
 }
 
+/// Rows on lines of their own, or all of them on one.
+bool hasLinesOfMatrix(const std::vector<std::size_t>& lines) {
+  const bool one = lines.front() == lines.back();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i] != lines[i - i % 4]) return false;
+    if (i >= 4 && !one && lines[i] == lines[i - 4]) return false;
+  }
+  return true;
+}
+
 /// The values behind a key of JSON: a text or a list, nested or not; nothing where the key is not
 /// there. Throws InputError when it is there twice.
 std::optional<std::string> valueOf(std::string_view json, const std::string& key,
@@ -104,6 +114,19 @@ std::optional<Eigen::Affine3d> pdalMatrix(const std::filesystem::path& path) {
 Eigen::Affine3d readMatrix(const std::filesystem::path& path) {
   if (const auto matrix = pdalMatrix(path)) return *matrix;
   return matrixFrom(readNumbers(path).numbers, path);
+}
+
+bool looksLikeMatrix(std::string_view text) {
+  constexpr std::size_t kMostBytes = 4096;
+  if (text.size() > kMostBytes) return false;
+  try {
+    const NumberFile file = numbersIn(withoutMark(text), "");
+    const std::vector<double>& n = file.numbers;
+    return n.size() == kMatrixNumbers && hasLinesOfMatrix(file.lines) && n[12] == 0.0 &&
+           n[13] == 0.0 && n[14] == 0.0 && n[15] == 1.0;
+  } catch (const InputError&) {
+    return false;  // words: names of columns, say
+  }
 }
 
 Eigen::Affine3d readTransform(const std::filesystem::path& path) {

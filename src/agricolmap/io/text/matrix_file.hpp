@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "agricolmap/io/output/output_path.hpp"
 
@@ -13,6 +14,10 @@ namespace agricolmap::io {
 /// fine. So is JSON of PDAL: the one "matrix" of a pipeline, or the "composed" one (else the
 /// "transform") that its ICP reports. Throws InputError.
 Eigen::Affine3d readMatrix(const std::filesystem::path& path);
+
+/// Whether a whole file's text is such a matrix, its rows on four lines or all on one, and nothing
+/// else: 16 numbers whose last four are 0 0 0 1.
+bool looksLikeMatrix(std::string_view text);
 
 /// Writes 17 significant digits: what is read back is the same to the bit. `comment` goes first,
 /// each of its lines behind a `#`.
