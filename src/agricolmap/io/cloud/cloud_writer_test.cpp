@@ -140,8 +140,10 @@ TEST(CloudWriter, SoAreThoseOfSeveralBatches) {
   Cloud cloud;
   cloud.origin = {500000, 5400000, 300};
   for (std::size_t i = 0; i < PointStream::kBatch + 17001; ++i) {
-    cloud.xyz.emplace_back(0.01F * static_cast<float>(i / 1000),
-                           0.01F * static_cast<float>(i % 1000), 0.0F);
+    const std::size_t row = i / 1000;
+    const std::size_t column = i % 1000;
+    cloud.xyz.emplace_back(0.01F * static_cast<float>(row), 0.01F * static_cast<float>(column),
+                           0.0F);
   }
   writePly(dir / "large.ply", cloud);
   std::vector<CloudFormat> targets{CloudFormat::kPly, CloudFormat::kLas};
