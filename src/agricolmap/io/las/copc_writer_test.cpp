@@ -71,7 +71,7 @@ std::map<CopcKey, Node> nodesOf(const LasRecord& hierarchy) {
   std::map<CopcKey, Node> nodes;
   for (std::size_t at = 0; at < hierarchy.data.size(); at += 32) {
     const std::byte* const entry = &hierarchy.data[at];
-    const auto number = [&](int i) { return loadLe<std::int32_t>(entry + 4 * i); };
+    const auto number = [&](std::size_t i) { return loadLe<std::int32_t>(entry + 4 * i); };
     nodes[{number(0), number(1), number(2), number(3)}] = {loadLe<std::uint64_t>(entry + 16),
                                                            number(6), number(7)};
   }
