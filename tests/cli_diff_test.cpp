@@ -96,7 +96,7 @@ TEST_F(DiffTest, FindsWhatGrewAndNothingElse) {
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find("rose"), std::string::npos);
   EXPECT_EQ(entries("out"),
-            (std::set<std::string>{"change.json", "change.png", "cover_change.tif",
+            (std::set<std::string>{"change.html", "change.json", "change.png", "cover_change.tif",
                                    "height_change.tif", "plant_height_change.tif"}));
   const io::Layer<float> change = io::readLayer<float>(inFolder("out/height_change.tif"));
   EXPECT_EQ(change.shape.bands,
