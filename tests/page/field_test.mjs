@@ -261,11 +261,54 @@ for (const kind of ["facts", "change"]) {
   }
 }
 
+test("facts: a hundred thousand plants open, are drawn, found and listed without a wait", (chromium, { large }) =>
+  on(chromium, `file://${large}/facts.html`, {}, async (page) => {
+    assert.ok(page.loadTime < 4000, page.loadTime);
+    await ready(page);
+    await settled();
+    assert.match(await text(page, "#map"), /120\u202f000 of 300\u202f000 plants are on this page, evenly chosen/);
+    const timed = (act) => page.evaluate(`(() => { const begin = performance.now(); ${act}; return performance.now() - begin; })()`);
+    const canvas = `document.querySelector(".map canvas")`;
+    await page.evaluate(`${canvas}.focus()`);
+    const key = (name) => `${canvas}.dispatchEvent(new KeyboardEvent("keydown", { key: "${name}" }))`;
+    for (const name of ["+", "+", "+", "+", "ArrowLeft", "Enter"]) {
+      const time = await timed(key(name));
+      assert.ok(time < 1000, `${name}: ${time} ms`);
+    }
+    assert.match(await card(page), /^Plant \d+\n/);
+    await list(page, "plants");
+    assert.match(await text(page, ".pager"), / of 120\u202f000/);
+    const sorting = await timed(`document.querySelectorAll(".sort")[2].click()`);
+    assert.ok(sorting < 2000, `${sorting} ms`);
+    assert.match(await text(page, ".pager"), /^1 to 50 of /);
+  }));
+
+/** A page of so many plants, 0.1 m and 0.2 m apart, instead of its own. */
+function largePage(from, to) {
+  const page = readFileSync(`${from}/facts.html`, "utf8");
+  const [, begin, data, end] = page.match(/^([^]*id="data-scene">)(.*?)(<\/script>[^]*)$/s);
+  const scene = JSON.parse(data);
+  const count = 120_000;
+  const column = (value, step, kind) => ({ low: 0, step, bytes: kind.BYTES_PER_ELEMENT,
+    data: Buffer.from(kind.from({ length: count }, (_, i) => value(i)).buffer).toString("base64") });
+  const along = 1000;  // in a row
+  scene.layers.plants = { kind: "point", count, of: 300_000,
+    shapes: { x: column((i) => 100 * (i % along), 0.001, Uint32Array),
+      y: column((i) => 200 * Math.floor(i / along), 0.001, Uint16Array) },
+    columns: { id: column((i) => i + 1, 1, Uint32Array), row: column((i) => Math.floor(i / along) % 20 + 1, 1, Uint8Array),
+      along_m: column((i) => i % along, 0.1, Uint16Array),
+      height_m: column((i) => (i * 7919) % 300, 0.001, Uint16Array) } };
+  mkdirSync(to, { recursive: true });
+  writeFileSync(`${to}/facts.html`, begin + JSON.stringify(scene) + end);
+  return to;
+}
+
 const map = mapOf("june", "0.5");
 const later = mapOf("august", "0.9");
-const pages = { facts: `${folder}/facts`, bare: `${folder}/bare`, change: `${folder}/change` };
+const pages = { facts: `${folder}/facts`, bare: `${folder}/bare`, change: `${folder}/change`, large: `${folder}/large` };
 run("facts", map, "-o", pages.bare, "--no-pictures");
 const [, first] = csv(`${pages.bare}/grid.csv`);
 run("facts", map, "-o", pages.facts, "--plots", plotsAt([Number(first[1]) + 2, Number(first[2]) + 2]));
 run("diff", map, later, "-o", pages.change, "--frame-error", "0.01", "0.01");
+largePage(pages.facts, pages.large);
 await runAll(tests, new Chromium(program), pages);

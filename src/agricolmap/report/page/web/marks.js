@@ -7,6 +7,7 @@ import { apply, rampTable, RAMPS } from "./layers.js";
 const HALO = "#000000b0";
 const FAINT_HALO = "#00000060";
 const CHOSEN = "#00e5ff";
+const PATH_MARKS = 200;  // in one path: long ones take long to stroke
 const SHADES = rampTable(RAMPS.height);
 
 /** How each kind of mark is drawn: a colour and a shape that tell it apart without the colour. */
@@ -70,33 +71,36 @@ export class Marks {
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.lineJoin = "round";
     // Of a whole field marks are small, so that they do not run into each other.
-    const size = ratio * Math.min(1.5, Math.max(0.55, scale / 28));
+    const sizes = { point: ratio * Math.min(1.5, Math.max(0.5, scale / 90)),
+      line: ratio * Math.min(1.3, Math.max(0.55, scale / 28)), polygon: ratio };
     if (this.shade) this.drawShade(context, view, box, ratio);
     for (const thing of this.things) {
-      if (this.isDrawn(thing, scale)) this.drawThing(context, view, box, thing, size);
+      if (this.isDrawn(thing, scale)) this.drawThing(context, view, box, thing, sizes[this.layers[thing.name].kind]);
     }
     for (const thing of this.things) {
       if (thing.labels && this.on[thing.name]) this.drawLabels(context, view, box, thing, ratio);
     }
-    if (this.chosen) this.drawChosen(context, view, Math.max(size, ratio));
+    if (this.chosen) this.drawChosen(context, view, Math.max(sizes.line, ratio));
     context.restore();
+  }
+  tracePoint(path, x, y, thing, ratio) {
+    const r = MARK_SHAPES[thing.shape].radius * ratio;
+    if (thing.shape === "diamond") {
+      path.moveTo(x, y - r);
+      path.lineTo(x + r, y);
+      path.lineTo(x, y + r);
+      path.lineTo(x - r, y);
+      path.closePath();
+    } else {
+      path.moveTo(x + r, y);
+      path.arc(x, y, r, 0, 2 * Math.PI);
+    }
   }
   /** Adds a thing's outline to a path, in pixels. */
   trace(path, view, layer, i, thing, ratio) {
-    const { radius } = MARK_SHAPES[thing.shape];
     if (layer.kind === "point") {
       const [x, y] = apply(view, [layer.x[i], layer.y[i]]);
-      const r = radius * ratio;
-      if (thing.shape === "diamond") {
-        path.moveTo(x, y - r);
-        path.lineTo(x + r, y);
-        path.lineTo(x, y + r);
-        path.lineTo(x - r, y);
-        path.closePath();
-      } else {
-        path.moveTo(x + r, y);
-        path.arc(x, y, r, 0, 2 * Math.PI);
-      }
+      this.tracePoint(path, x, y, thing, ratio);
       return;
     }
     const points = layer.points(i).map((point) => apply(view, point));
@@ -116,16 +120,43 @@ export class Marks {
   }
   drawThing(context, view, box, thing, ratio) {
     const layer = this.layers[thing.name];
-    const { width, dashes = [] } = MARK_SHAPES[thing.shape];
+    const visible = [];
+    this.index(thing.name).within(box, (i) => visible.push(i));
+    if (layer.kind === "point") this.drawPoints(context, view, layer, visible, thing, ratio);
+    else this.drawLines(context, view, layer, visible, thing, ratio);
+  }
+  /** Of points one is drawn, and its picture laid down for all: paths of many arcs take minutes. */
+  drawPoints(context, view, layer, visible, thing, ratio) {
+    const { width, radius } = MARK_SHAPES[thing.shape];
+    const half = Math.ceil((radius + width + 2) * ratio);
+    const stamp = document.createElement("canvas");
+    stamp.width = stamp.height = 2 * half;
     const path = new Path2D();
-    this.index(thing.name).within(box, (i) => this.trace(path, view, layer, i, thing, ratio));
+    this.tracePoint(path, half, half, thing, ratio);
+    this.stroke(stamp.getContext("2d"), [path], thing, ratio);
+    for (const i of visible) {
+      const [x, y] = apply(view, [layer.x[i], layer.y[i]]);
+      context.drawImage(stamp, Math.round(x) - half, Math.round(y) - half);
+    }
+  }
+  drawLines(context, view, layer, visible, thing, ratio) {
+    const paths = [];
+    for (const [k, i] of visible.entries()) {
+      if (k % PATH_MARKS === 0) paths.push(new Path2D());
+      this.trace(paths.at(-1), view, layer, i, thing, ratio);
+    }
+    this.stroke(context, paths, thing, ratio);
+  }
+  /** First what sets them off from the ground, of all of them, then they themselves. */
+  stroke(context, paths, thing, ratio) {
+    const { width, dashes = [] } = MARK_SHAPES[thing.shape];
     context.lineWidth = (width + 2) * ratio;
     context.strokeStyle = thing.shape === "line" ? FAINT_HALO : HALO;
-    context.stroke(path);
+    for (const path of paths) context.stroke(path);
     context.setLineDash(dashes.map((dash) => dash * ratio));
     context.lineWidth = width * ratio;
     context.strokeStyle = thing.colour;
-    context.stroke(path);
+    for (const path of paths) context.stroke(path);
     context.setLineDash([]);
   }
   drawShade(context, view, box, ratio) {
