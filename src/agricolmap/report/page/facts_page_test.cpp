@@ -64,11 +64,11 @@ VectorLayer plantsOf(std::size_t count) {
                     {}};
   for (std::size_t i = 0; i < count; ++i) {
     const double along = 0.2 * static_cast<double>(i % 100);
-    const double across = 0.5 * static_cast<double>(i / 100);
-    layer.features.push_back(
-        {{{352400.0 + along, 4815300.0 + across}},
-         {static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(i / 100 + 1), along,
-          i == 1 ? std::nan("") : 0.123, 0.00456, 0.9}});
+    const std::size_t row = i / 100;
+    const double across = 0.5 * static_cast<double>(row);
+    layer.features.push_back({{{352400.0 + along, 4815300.0 + across}},
+                              {static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(row + 1),
+                               along, i == 1 ? std::nan("") : 0.123, 0.00456, 0.9}});
   }
   return layer;
 }

@@ -16,7 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using io::FieldKind;
-using io::VectorFeature;
 using io::VectorLayer;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
