@@ -96,7 +96,7 @@ TEST_F(DiffTest, FindsWhatGrewAndNothingElse) {
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find("rose"), std::string::npos);
   EXPECT_EQ(entries("out"),
-            (std::set<std::string>{"change.json", "change.png", "cover_change.tif",
+            (std::set<std::string>{"change.html", "change.json", "change.png", "cover_change.tif",
                                    "height_change.tif", "plant_height_change.tif"}));
   const io::Layer<float> change = io::readLayer<float>(inFolder("out/height_change.tif"));
   EXPECT_EQ(change.shape.bands,
@@ -189,7 +189,8 @@ TEST_F(DiffTest, TakesSurfaceModels) {
   const nlohmann::json json = jsonOf(inFolder("out/change.json"));
   EXPECT_NEAR(json["surface"]["rise"]["mean_m"], 0.2, 1e-4);
   EXPECT_NEAR(json["surface"]["median_detection_m"], 1.96 * 0.05, 1e-4);
-  EXPECT_EQ(entries("out"), (std::set<std::string>{"change.json", "height_change.tif"}));
+  EXPECT_EQ(entries("out"),
+            (std::set<std::string>{"change.html", "change.json", "height_change.tif"}));
 }
 
 TEST_F(DiffTest, RefusesMapsThatDoNotGoTogether) {

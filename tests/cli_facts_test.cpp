@@ -53,6 +53,9 @@ TEST_F(FactsTest, CountsThePlantsOfADronesCloud) {
   EXPECT_EQ(lines(contentOf(inFolder("facts/plants.csv")), "."),
             json["total"]["plants"]["counted"]);
   EXPECT_EQ(contentOf(inFolder("facts/facts.png")).substr(0, 4), "\x89PNG");
+  const std::string page = contentOf(inFolder("facts/facts.html"));
+  EXPECT_NE(page.find("\"colour\":\"iVBOR"), std::string::npos);  // also of a cloud that is no map
+  EXPECT_LT(page.size(), 8'000'000U);
   const auto brapi = nlohmann::json::parse(contentOf(inFolder("facts/brapi.geojson")));
   ASSERT_GE(brapi["features"].size(), 9U);
   const auto& unit = brapi["features"][0]["properties"];
@@ -136,6 +139,8 @@ TEST_F(FactsTest, OfASharedMapSeeTheStripsInTheirOwnCells) {
   const auto drone = jsonOf(inFolder("drone/facts.json"));
   EXPECT_NEAR(map["rows"]["spacing_m"], drone["rows"]["spacing_m"], 0.01);
   EXPECT_NEAR(map["total"]["cover"], drone["total"]["cover"], 0.03);
+  EXPECT_NE(contentOf(inFolder("facts/facts.html")).find("\"map_page\":\"../map/map.html\""),
+            std::string::npos);
   // What the drone's blur flattens the robot has seen.
   EXPECT_GT(map["total"]["height_m"]["p90"], drone["total"]["height_m"]["p90"]);
 }

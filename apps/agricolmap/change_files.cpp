@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/raster/geo_writer.hpp"
 #include "agricolmap/report/pictures/change_picture.hpp"
+#include "common.hpp"
 
 namespace agricolmap {
 namespace {
@@ -31,6 +33,27 @@ ordered_json toJson(const LayerChange& layer, const char* kind, const char* unit
           {key("before"), layer.before},
           {key("after"), layer.after},
           {key("change"), layer.after - layer.before}};
+}
+
+void writePage(const io::OutputPath& path, const MapChange& found, const ChangeRun& run) {
+  const report::LayerTimes none;
+  const report::ChangeGround ground{found.ground.frame,
+                                    found.ground.origin.head<2>(),
+                                    found.heights,
+                                    found.surface,
+                                    found.plant_height ? found.plant_height->times : none,
+                                    found.cover ? found.cover->times : none,
+                                    found.colour_before,
+                                    found.colour_after};
+  const auto pageOf = [&](const std::string& map) {
+    return wayTo(std::filesystem::path(map) / "map.html", run.folder);
+  };
+  ordered_json scene = report::changeScene(ground);
+  if (run.pictures) report::addChangePictures(scene, ground);
+  io::writeText(path,
+                report::changePage(toJson(found), std::move(scene),
+                                   {describe(found), run.warnings, pageOf(found.name_a),
+                                    pageOf(found.name_b), run.command_line, AGRICOLMAP_VERSION}));
 }
 
 void writeBands(const io::OutputPath& path, const MapChange& found,
@@ -88,7 +111,7 @@ ordered_json toJson(const MapChange& found) {
   return json;
 }
 
-std::vector<ChangeLine> describe(const MapChange& found) {
+std::vector<report::ChangeFact> describe(const MapChange& found) {
   const change::Totals& totals = found.totals;
   const auto centimetres = [](double metres) { return rounded(100.0 * metres, 1) + " cm"; };
   const auto average = [&](const change::Share& share) {
@@ -99,7 +122,7 @@ std::vector<ChangeLine> describe(const MapChange& found) {
     if (share.cells == 0) return std::string("nowhere by more than its errors");
     return fmt::format("{}, by {} (median)", describe(share), centimetres(share.median));
   };
-  std::vector<ChangeLine> lines = {
+  std::vector<report::ChangeFact> lines = {
       {"compared", fmt::format("{}, {}", describe(totals.compared), average(totals.compared))},
       {"rose", significant(totals.rise)},
       {"fell", significant(totals.fall)},
@@ -122,7 +145,7 @@ std::vector<ChangeLine> describe(const MapChange& found) {
   return lines;
 }
 
-void writeChange(const io::OutputPath& dir, const MapChange& found, bool picture) {
+void writeChange(const io::OutputPath& dir, const MapChange& found, const ChangeRun& run) {
   writeBands(dir / "height_change.tif", found,
              {{&found.heights.change, "change", "m"},
               {&found.heights.detection, "level of detection", "m"},
@@ -135,9 +158,10 @@ void writeChange(const io::OutputPath& dir, const MapChange& found, bool picture
     writeBands(dir / "cover_change.tif", found, {{&found.cover->change, "change", ""}});
   }
   io::writeText(dir / "change.json", toJson(found).dump(2) + "\n");
-  if (!picture) return;
+  writePage(dir / "change.html", found, run);
+  if (!run.pictures) return;
   std::vector<std::string> facts;
-  for (const ChangeLine& line : describe(found)) {
+  for (const report::ChangeFact& line : describe(found)) {
     facts.push_back(fmt::format("{}: {}", line.label, line.text));
   }
   report::writeChangePicture(

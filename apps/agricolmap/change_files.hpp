@@ -1,6 +1,7 @@
 // What `agricolmap diff` writes.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -8,12 +9,14 @@
 
 #include "agricolmap/change/totals.hpp"
 #include "agricolmap/io/output/output_path.hpp"
+#include "agricolmap/report/page/change_page.hpp"
 #include "change_maps.hpp"
 
 namespace agricolmap {
 
 /// Of another layer that both maps have.
 struct LayerChange {
+  report::LayerTimes times;
   Raster<float> change;  ///< b − a, NaN where one has none
   /// What the two values are of: all that both maps have, for heights only where both have plants
   /// on more than half of the cell, if they say where plants are.
@@ -30,23 +33,29 @@ struct MapChange {
   change::FrameError frames;
   change::HeightChange heights;
   change::Totals totals;
+  report::LayerTimes surface;
+  report::ColourMap colour_before;  ///< without rasters unless it is asked for
+  report::ColourMap colour_after;
   std::optional<LayerChange> plant_height;
   std::optional<LayerChange> cover;
 };
 
 /// Names of all files that a run may write.
-inline const std::vector<std::string> kChangeFiles = {"height_change.tif",
-                                                      "plant_height_change.tif", "cover_change.tif",
-                                                      "change.json", "change.png"};
+inline const std::vector<std::string> kChangeFiles = {
+    "height_change.tif", "plant_height_change.tif", "cover_change.tif", "change.json", "change.png",
+    "change.html"};
 
 nlohmann::ordered_json toJson(const MapChange& found);
-/// One of the totals in words.
-struct ChangeLine {
-  std::string label;
-  std::string text;
+/// The totals in words.
+std::vector<report::ChangeFact> describe(const MapChange& found);
+/// What is not in the change itself.
+struct ChangeRun {
+  bool pictures = true;
+  std::filesystem::path folder;  ///< where the results will be
+  std::vector<std::string> warnings;
+  std::vector<std::string> command_line;
 };
-std::vector<ChangeLine> describe(const MapChange& found);
 /// Into the folder `dir`. Throws OutputError.
-void writeChange(const io::OutputPath& dir, const MapChange& found, bool picture);
+void writeChange(const io::OutputPath& dir, const MapChange& found, const ChangeRun& run);
 
 }  // namespace agricolmap

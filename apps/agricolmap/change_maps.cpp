@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <system_error>
+#include <utility>
 
 #include "agricolmap/change/common_grid.hpp"
 #include "agricolmap/core/error.hpp"
@@ -144,6 +145,15 @@ std::optional<Raster<float>> ChangeMap::layerOn(const std::string& layer, const 
   requireOwnGrid(*file);
   const Part part = partFor(grid, origin);
   return change::areaMean(io::readLayer<float>(*file, part.window).bands.front(), part.frame, grid);
+}
+
+report::ColourMap ChangeMap::coloursOn(const GridFrame& grid, const Eigen::Vector3d& origin) const {
+  const auto file = folder_ ? folder_->layer("colour") : std::nullopt;
+  if (!file) return {};
+  requireOwnGrid(*file);
+  const Part part = partFor(grid, origin);
+  io::Layer<Rgb> layer = io::readLayer<Rgb>(*file, part.window);
+  return {part.frame, std::move(layer.bands.front()), std::move(layer.valid)};
 }
 
 CommonGround commonGroundOf(const ChangeMap& a, const ChangeMap& b,

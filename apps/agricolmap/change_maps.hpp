@@ -11,6 +11,7 @@
 #include "agricolmap/core/raster.hpp"
 #include "agricolmap/io/raster/geo_reader.hpp"
 #include "agricolmap/report/json/shared_map_file.hpp"
+#include "agricolmap/report/page/scene_colours.hpp"
 
 namespace agricolmap {
 
@@ -32,6 +33,9 @@ class ChangeMap {
   const std::optional<report::StoredMap>& folder() const { return folder_; }
   std::filesystem::path surfaceFile() const;
 
+  /// Its colours, in its own cells where these lie on `grid`, about `origin`; without rasters where
+  /// the map has none.
+  report::ColourMap coloursOn(const GridFrame& grid, const Eigen::Vector3d& origin) const;
   /// All of it on `grid`, which is about `origin` and within this map.
   change::MapHeights heightsOn(const GridFrame& grid, const Eigen::Vector3d& origin,
                                std::vector<std::string>& warnings) const;

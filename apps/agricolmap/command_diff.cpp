@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "agricolmap/core/robust.hpp"
@@ -40,24 +41,20 @@ double summaryOf(std::vector<float>& values, Summary summary) {
   return sum / static_cast<double>(values.size());
 }
 
-/// One layer of both maps.
-struct LayerPair {
-  Raster<float> before;
-  Raster<float> after;
-};
-
 /// Nothing where one of the maps has no such layer.
-std::optional<LayerPair> readPair(const char* layer, const ChangeMap& a, const ChangeMap& b,
-                                  const CommonGround& ground) {
+std::optional<report::LayerTimes> readPair(const char* layer, const ChangeMap& a,
+                                           const ChangeMap& b, const CommonGround& ground) {
   auto before = a.layerOn(layer, ground.frame, ground.origin);
   auto after = b.layerOn(layer, ground.frame, ground.origin);
   if (!before || !after) return std::nullopt;
-  return LayerPair{*std::move(before), *std::move(after)};
+  return report::LayerTimes{*std::move(before), *std::move(after)};
 }
 
 /// `among`: the cells that the summary is of; nullptr: all.
-LayerChange changeOf(const LayerPair& pair, Summary summary, const Raster<std::uint8_t>* among) {
-  LayerChange found{Raster<float>(pair.before.rows(), pair.before.cols())};
+LayerChange changeOf(report::LayerTimes times, Summary summary, const Raster<std::uint8_t>* among) {
+  LayerChange found{std::move(times), {}};
+  const report::LayerTimes& pair = found.times;
+  found.change = Raster<float>(pair.before.rows(), pair.before.cols());
   std::vector<float> before;
   std::vector<float> after;
   for (std::size_t i = 0; i < found.change.size(); ++i) {
@@ -73,7 +70,7 @@ LayerChange changeOf(const LayerPair& pair, Summary summary, const Raster<std::u
 }
 
 /// 1 where more than half of the cell is vegetation in both maps.
-Raster<std::uint8_t> plantsIn(const LayerPair& covers) {
+Raster<std::uint8_t> plantsIn(const report::LayerTimes& covers) {
   Raster<std::uint8_t> plants(covers.before.rows(), covers.before.cols());
   for (std::size_t i = 0; i < plants.size(); ++i) {
     plants[i] = covers.before[i] > 0.5F && covers.after[i] > 0.5F ? 1 : 0;
@@ -107,17 +104,22 @@ MapChange compare(const DiffArguments& arguments, Progress& progress,
   const GridFrame& grid = found.ground.frame;
   const Eigen::Vector3d& origin = found.ground.origin;
   progress.step("reading the maps");
-  const change::MapHeights heights_a = a.heightsOn(grid, origin, warnings);
-  const change::MapHeights heights_b = b.heightsOn(grid, origin, warnings);
+  change::MapHeights heights_a = a.heightsOn(grid, origin, warnings);
+  change::MapHeights heights_b = b.heightsOn(grid, origin, warnings);
   std::optional<Raster<std::uint8_t>> bare;
   std::optional<Raster<std::uint8_t>> planted;
-  if (const auto covers = readPair("cover", a, b, found.ground)) {
-    found.cover = changeOf(*covers, Summary::kMean, nullptr);
+  if (auto covers = readPair("cover", a, b, found.ground)) {
     bare = change::bareGround(covers->before, covers->after);
     planted = plantsIn(*covers);
+    found.cover = changeOf(*std::move(covers), Summary::kMean, nullptr);
   }
-  if (const auto plants = readPair("plant_height", a, b, found.ground)) {
-    found.plant_height = changeOf(*plants, Summary::kMedian, planted ? &*planted : nullptr);
+  if (auto plants = readPair("plant_height", a, b, found.ground)) {
+    found.plant_height =
+        changeOf(*std::move(plants), Summary::kMedian, planted ? &*planted : nullptr);
+  }
+  if (!arguments.no_pictures) {
+    found.colour_before = a.coloursOn(grid, origin);
+    found.colour_after = b.coloursOn(grid, origin);
   }
   progress.step("comparing them");
   found.heights = change::heightChange(heights_a, heights_b, grid.cell, found.frames);
@@ -128,6 +130,7 @@ MapChange compare(const DiffArguments& arguments, Progress& progress,
         fmt::format("{} and {} have no cell in common of which both know the surface and its error",
                     arguments.map_a, arguments.map_b));
   }
+  found.surface = {std::move(heights_a.surface), std::move(heights_b.surface)};
   return found;
 }
 
@@ -152,12 +155,13 @@ ExitCode runDiff(const DiffArguments& arguments, const Globals& globals) {
     found = compare(arguments, progress, warnings);
     warnOfBareGround(*found, warnings);
     progress.step("writing");
-    writeChange(output.folder(), *found, !arguments.no_pictures);
+    writeChange(output.folder(), *found,
+                {!arguments.no_pictures, output.directory(), warnings, globals.command_line});
   }
   output.commit(kChangeFiles);
   printWarnings(warnings);
   if (globals.quiet) return ExitCode::kOk;
-  for (const ChangeLine& line : describe(*found)) {
+  for (const report::ChangeFact& line : describe(*found)) {
     fmt::print("{:<11} {}\n", line.label, line.text);
   }
   return ExitCode::kOk;

@@ -9,6 +9,7 @@
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/vector/vector_layer.hpp"
 #include "agricolmap/report/facts/facts_layers.hpp"
+#include "agricolmap/report/page/facts_page.hpp"
 #include "agricolmap/report/pictures/facts_picture.hpp"
 #include "common.hpp"
 #include "facts_input.hpp"
@@ -17,6 +18,7 @@
 namespace agricolmap {
 namespace {
 
+constexpr const char* kPage = "facts.html";
 constexpr const char* kPicture = "facts.png";
 constexpr const char* kBrapi = "brapi.geojson";
 constexpr const char* kPlots = "plots.csv";
@@ -51,8 +53,8 @@ void requirePlotsOnMap(const FactsArguments& arguments, const crop::FieldFacts& 
                   arguments.plots, arguments.map, facts.per_plot.size()));
 }
 
-void writeFiles(const io::StagedOutput& output, const report::PlacedFacts& placed) {
-  const std::vector<io::VectorLayer> layers = report::factsLayers(placed);
+void writeFiles(const io::StagedOutput& output, const report::PlacedFacts& placed,
+                const std::vector<io::VectorLayer>& layers) {
   io::writeGeoPackage(output.path("facts.gpkg"), layers, placed.crs);
   for (const io::VectorLayer& layer : layers) {
     io::writeCsv(output.path(layer.name + ".csv"), layer);
@@ -60,6 +62,21 @@ void writeFiles(const io::StagedOutput& output, const report::PlacedFacts& place
   io::writeText(output.path("facts.json"), report::factsJson(placed).dump(2) + "\n");
   const nlohmann::ordered_json brapi = report::brapiJson(placed);
   if (!brapi.is_null()) io::writeText(output.path(kBrapi), brapi.dump(1) + "\n");
+}
+
+void writePage(const io::StagedOutput& output, const FactsArguments& arguments,
+               const FactsInput& input, const report::PlacedFacts& placed,
+               const std::vector<io::VectorLayer>& layers, const Globals& globals) {
+  const report::FactsGround ground{input.layers.frame, placed.facts.greenness.green,
+                                   input.layers.height, input.colours};
+  report::FactsPageInfo info;
+  info.map_page = wayTo(input.map_page, output.directory());
+  info.command_line = globals.command_line;
+  info.version = AGRICOLMAP_VERSION;
+  nlohmann::ordered_json scene = report::factsScene(layers, placed.origin);
+  if (!arguments.no_pictures) report::addFactsPictures(scene, ground);
+  io::writeText(output.path(kPage), report::factsPage(report::factsJson(placed), std::move(scene),
+                                                      report::factsText(placed), info));
 }
 
 ExitCode runFacts(const FactsArguments& arguments, const Globals& globals) {
@@ -82,7 +99,9 @@ ExitCode runFacts(const FactsArguments& arguments, const Globals& globals) {
   requirePlotsOnMap(arguments, facts);
   const report::PlacedFacts placed{facts, layers.origin, plots, input.crs, arguments.map};
   progress.step("write");
-  writeFiles(output, placed);
+  const std::vector<io::VectorLayer> things = report::factsLayers(placed);
+  writeFiles(output, placed, things);
+  writePage(output, arguments, input, placed, things, globals);
   if (!arguments.no_pictures) {
     report::writeFactsPicture(output.path(kPicture), layers.frame, placed);
   }

@@ -86,6 +86,13 @@ void requirePictures(bool no_pictures) {
   throw UsageError("this program was built without Cairo, which pictures need; say --no-pictures");
 }
 
+std::string wayTo(const std::filesystem::path& page, const std::filesystem::path& folder) {
+  std::error_code error;
+  if (page.empty() || !std::filesystem::exists(page, error)) return "";
+  const std::filesystem::path way = std::filesystem::relative(page, folder, error);
+  return error ? "" : way.generic_string();
+}
+
 void printWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) spdlog::warn("{}", warning);
 }

@@ -89,6 +89,9 @@ class Progress {
 std::string flagsFor(Remedy remedy);
 /// Throws UsageError when pictures are asked for that this build cannot draw.
 void requirePictures(bool no_pictures);
+/// The way from a page in `folder` to `page`, as a page names it; empty where `page` is or there is
+/// none.
+std::string wayTo(const std::filesystem::path& page, const std::filesystem::path& folder);
 /// To stderr, one line each, unless --quiet.
 void printWarnings(const std::vector<std::string>& warnings);
 /// Hears what the user should know, as it is found.

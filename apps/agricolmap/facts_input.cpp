@@ -105,6 +105,18 @@ void paint(const GridFrame& from, const Raster<float>& values, const GridFrame& 
   }
 }
 
+/// The colours of a map's folder, about another origin; without rasters where it has none.
+report::ColourMap coloursOf(const std::filesystem::path& folder, const Eigen::Vector2d& origin) {
+  const std::filesystem::path path = folder / "layers/colour.tif";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return {};
+  io::Layer<Rgb> layer = io::readLayer<Rgb>(path);
+  report::ColourMap colours{placedFrame(layer.shape), std::move(layer.bands.front()),
+                            std::move(layer.valid)};
+  colours.frame.corner -= origin;
+  return colours;
+}
+
 FactsInput readMapFolder(const std::filesystem::path& folder) {
   const std::vector<FineStrip> strips = fineStripsOf(folder);
   io::Layer<float> exg = io::readLayer<float>(folder / "layers/exg.tif");
@@ -141,6 +153,10 @@ FactsInput readMapFolder(const std::filesystem::path& folder) {
   }
   layers.origin = layers.frame.corner.array().floor().matrix();
   layers.frame.corner -= layers.origin;
+  input.colours = coloursOf(folder, layers.origin);
+  if (const auto page = folder / "map.html"; std::filesystem::exists(page, ignored)) {
+    input.map_page = page;
+  }
   return input;
 }
 
@@ -160,6 +176,8 @@ FactsInput readCloudInput(const std::string& path, const std::string& given, Pro
   FactsInput input;
   if (crs.crs) input.crs = *crs.crs;
   input.layers = crop::layersOf(*cloud);
+  input.colours = {input.layers.frame, std::move(input.layers.colour),
+                   std::move(input.layers.coloured)};
   return input;
 }
 

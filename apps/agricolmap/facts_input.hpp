@@ -6,13 +6,16 @@
 
 #include "agricolmap/core/cloud.hpp"
 #include "agricolmap/crop/field_layers.hpp"
+#include "agricolmap/report/page/scene_colours.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
 
 struct FactsInput {
   crop::FieldLayers layers;
-  Crs crs;  ///< empty: nobody said
+  report::ColourMap colours;       ///< about the layers' origin
+  std::filesystem::path map_page;  ///< of a map's folder, where there is one
+  Crs crs;                         ///< empty: nobody said
 };
 
 /// A folder is a map: layers/exg.tif and layers/plant_height.tif, and those of fine/ where there

@@ -5,6 +5,7 @@ import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { Chromium } from "./chromium.mjs";
 import { contrastsOf, namelessOf } from "./access.mjs";
+import { choose, labelled, on, picture, runAll, text } from "./harness.mjs";
 
 const [agricolmap, pairs, program, folder] = process.argv.slice(2);
 mkdirSync(folder, { recursive: true });
@@ -21,32 +22,6 @@ function register(name, kind, { moving, more = [], status = 0 } = {}) {
 
 const tests = [];
 const test = (name, run) => tests.push({ name, run });
-const quiet = (page) => {
-  assert.deepEqual(page.problems, []);
-  const foreign = page.requests.filter((url) => !url.startsWith("data:") && !url.endsWith(".html"));
-  assert.deepEqual(foreign, []);
-};
-const text = (page, selector) =>
-  page.evaluate(`document.querySelector(${JSON.stringify(selector)}).innerText`);
-const picture = (page, selector) =>
-  page.evaluate(`new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() =>
-    resolve(document.querySelector(${JSON.stringify(selector)}).toDataURL()))))`);
-const choose = (page, name, value) =>
-  page.evaluate(`document.querySelector('input[name="${name}"][value="${value}"]').click()`);
-const labelled = (label) =>
-  `[...document.querySelectorAll("label")].find((l) => l.innerText.trim() === ${JSON.stringify(label)})`;
-
-/** Opens a page, works on it, and wants it to have been quiet throughout. */
-async function on(chromium, url, options, work) {
-  const page = await chromium.open(url, options);
-  try {
-    await work(page);
-    quiet(page);
-  } finally {
-    await page.close();
-  }
-}
-
 async function inSpace(page) {
   await page.middle("#space");
   await page.until(`document.querySelector("#space canvas")`, "the 3-D view");
@@ -287,16 +262,4 @@ const pages = {
   batch: batch(),
   map: fused(),
 };
-const chromium = new Chromium(program);
-let failures = 0;
-for (const { name, run } of tests) {
-  try {
-    await run(chromium, pages);
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    ++failures;
-    console.log(`FAILED  ${name}\n${error.stack}`);
-  }
-}
-await chromium.close();
-process.exitCode = failures > 0 ? 1 : 0;
+await runAll(tests, new Chromium(program), pages);

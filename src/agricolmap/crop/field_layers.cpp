@@ -44,6 +44,32 @@ void fillBetween(Raster<float>& values) {
   }
 }
 
+/// The same for colours.
+void fillColours(Raster<Rgb>& colours, Raster<std::uint8_t>& known) {
+  constexpr int kLeastNeighbours = 3;
+  const Raster<std::uint8_t> before = known;
+  for (int row = 1; row + 1 < known.rows(); ++row) {
+    for (int col = 1; col + 1 < known.cols(); ++col) {
+      if (before(row, col) != 0) continue;
+      int red = 0, green = 0, blue = 0, count = 0;
+      for (int r = row - 1; r <= row + 1; ++r) {
+        for (int c = col - 1; c <= col + 1; ++c) {
+          if (before(r, c) == 0) continue;
+          red += colours(r, c).r;
+          green += colours(r, c).g;
+          blue += colours(r, c).b;
+          ++count;
+        }
+      }
+      if (count < kLeastNeighbours) continue;
+      colours(row, col) = {static_cast<std::uint8_t>(red / count),
+                           static_cast<std::uint8_t>(green / count),
+                           static_cast<std::uint8_t>(blue / count)};
+      known(row, col) = 1;
+    }
+  }
+}
+
 }  // namespace
 
 FieldLayers layersOf(const PointStream& cloud) {
@@ -59,8 +85,10 @@ FieldLayers layersOf(const PointStream& cloud) {
   FieldLayers layers;
   layers.frame = gridded.frame;
   layers.origin = cloud.facts().origin.head<2>();
+  layers.coloured = Raster<std::uint8_t>(gridded.exg.rows(), gridded.exg.cols(), 1);
   for (std::size_t i = 0; i < gridded.exg.size(); ++i) {
     if (gridded.valid(i)) continue;
+    layers.coloured[i] = 0;
     gridded.exg[i] = kUnknown;
     gridded.height[i] = kUnknown;
   }
@@ -71,6 +99,8 @@ FieldLayers layersOf(const PointStream& cloud) {
   }
   fillBetween(gridded.exg);
   layers.exg = std::move(gridded.exg);
+  layers.colour = std::move(gridded.colour);
+  fillColours(layers.colour, layers.coloured);
   return layers;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
+#include "agricolmap/core/cloud.hpp"
 #include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/core/raster.hpp"
 #include "agricolmap/crop/view.hpp"
@@ -13,8 +15,10 @@ struct FieldLayers {
   GridFrame frame;                                   ///< file coordinates less `origin` [m]
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< whole metres
   Raster<float> exg;                                 ///< chromatic, NaN where there is none
-  Raster<float> height;       ///< above ground, or above the field's plane; empty: not known
-  bool above_ground = false;  ///< which of them `height` is
+  Raster<float> height;           ///< above ground, or above the field's plane; empty: not known
+  bool above_ground = false;      ///< which of them `height` is
+  Raster<Rgb> colour;             ///< means of the points where there are some; empty: not known
+  Raster<std::uint8_t> coloured;  ///< 1 there; as large as `colour`
 
   View view() const { return {frame, exg, height}; }
 };

@@ -73,15 +73,6 @@ Page::Page(int content_height, const std::string& title, const std::string& subt
   top += bannerHeight(lines.size());
 }
 
-double roundStep(double range) {
-  const double rough = range / 5.0;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough) return factor * power;
-  }
-  return 10.0 * power;
-}
-
 void drawScaleBar(PictureCanvas& canvas, const View& view) {
   const double length = roundLength(0.2 * view.rect.width / view.scale);
   const double pixels = length * view.scale;

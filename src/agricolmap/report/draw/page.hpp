@@ -39,8 +39,6 @@ class Page {
   int top = 0;  ///< where the room begins [px]
 };
 
-/// A round step that parts `range` into four to ten.
-double roundStep(double range);
 /// A bar of a round length with its label, in the lower left corner of the view.
 void drawScaleBar(PictureCanvas& canvas, const View& view);
 /// An arrow to the north, in the upper right corner of the view: the levelled y axis, or what is

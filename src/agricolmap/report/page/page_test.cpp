@@ -6,11 +6,13 @@
 #include "agricolmap/report/page/page_facts.hpp"
 #include "agricolmap/report/page/page_text.hpp"
 #include "agricolmap/report/page/registration_page.hpp"
+#include "agricolmap/report/page/test_page.hpp"
 #include "agricolmap/report/test_registration.hpp"
 
 namespace agricolmap::report {
 namespace {
 
+using agricolmap::testing::dataOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -37,13 +39,6 @@ struct HostilePair {
     return content;
   }
 };
-
-/// What is between the tags of the data element `id`, read back.
-nlohmann::json dataOf(const std::string& page, const std::string& id) {
-  const std::string begin = "id=\"data-" + id + "\">";
-  const std::size_t from = page.find(begin) + begin.size();
-  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
-}
 
 std::size_t countOf(const std::string& text, const std::string& part) {
   std::size_t count = 0;

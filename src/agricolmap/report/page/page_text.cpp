@@ -7,6 +7,8 @@
 
 namespace agricolmap::report {
 
+using Json = nlohmann::ordered_json;
+
 std::string htmlText(std::string_view text) {
   std::string out;
   for (const char c : validUtf8(text)) {
@@ -36,7 +38,8 @@ std::string htmlText(std::string_view text) {
 std::string scriptJson(const nlohmann::ordered_json& json) {
   // Outside its strings JSON has no `<`.
   std::string out;
-  for (const char c : json.dump()) {
+  using Handler = Json::error_handler_t;
+  for (const char c : json.dump(-1, ' ', false, Handler::replace)) {
     if (c == '<') {
       out += "\\u003c";
     } else {

@@ -15,7 +15,8 @@ namespace agricolmap::report {
 /// `text` as the content of an element or of a quoted attribute; valid UTF-8.
 std::string htmlText(std::string_view text);
 
-/// `json` as the content of a script element: no `<` is left that could end it.
+/// `json` as the content of a script element: no `<` is left that could end it. What is no UTF-8 in
+/// it becomes U+FFFD.
 std::string scriptJson(const nlohmann::ordered_json& json);
 
 /// RFC 4648, padded.

@@ -6,7 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "agricolmap/core/robust.hpp"
+#include "agricolmap/change/distribution.hpp"
+#include "agricolmap/core/round_step.hpp"
 #include "agricolmap/report/draw/page.hpp"
 #include "agricolmap/report/draw/ramp.hpp"
 
@@ -19,25 +20,11 @@ constexpr int kMostHeight = 900;
 constexpr int kSide = kMargin + kMapWidth + 2 * kGap;
 constexpr int kSideWidth = kPageWidth - kMargin - kSide;
 constexpr int kBins = 48;
-constexpr double kLeastReach = 0.02;  // of the colours [m]
-constexpr double kShown = 0.99;       // of the changes are within the colours
 constexpr Colour kUnsure = hexColour(0xb4b8be);
 constexpr std::uint32_t kEmpty = 0xffffff;
 
 /// Of a change in units of the reach.
 std::uint32_t colourOf(double change) { return rampColour(kFallToRise, 0.5 * (change + 1.0)); }
-
-/// What the colours reach to: a round number that nearly all changes are within [m].
-double reachOf(const change::HeightChange& change) {
-  std::vector<float> sizes;
-  for (const float value : change.change) {
-    if (!std::isnan(value)) sizes.push_back(std::abs(value));
-  }
-  if (sizes.empty()) return kLeastReach;
-  const double reach = std::max(kLeastReach, static_cast<double>(quantile(sizes, kShown)));
-  const double step = roundStep(reach);
-  return step * std::ceil(reach / step);
-}
 
 /// The cells under one pixel: half-open, along one axis.
 struct Span {
@@ -115,26 +102,17 @@ void drawMarks(PictureCanvas& canvas, const PixelRect& rect, double reach) {
 }
 
 /// Cells by their change; in grey those that are not significant.
-void drawHistogram(PictureCanvas& canvas, const PixelRect& rect, const change::HeightChange& change,
-                   double reach) {
-  struct Bin {
-    double unsure = 0.0;
-    double sure = 0.0;
-  };
-  std::array<Bin, kBins> bins{};
-  for (std::size_t i = 0; i < change.change.size(); ++i) {
-    if (std::isnan(change.change[i])) continue;
-    const double at = kBins * 0.5 * (1.0 + static_cast<double>(change.change[i]) / reach);
-    Bin& bin = bins[static_cast<std::size_t>(std::clamp(at, 0.0, kBins - 1.0))];
-    (change.significant[i] > 0.0F ? bin.sure : bin.unsure) += 1.0;
-  }
+void drawHistogram(PictureCanvas& canvas, const PixelRect& rect,
+                   const change::HeightChange& change) {
+  const change::Distribution cells = change::distributionOf(change, kBins);
   double most = 1.0;
-  for (const Bin& bin : bins) most = std::max(most, bin.sure + bin.unsure);
+  for (const change::Distribution::Bin& bin : cells.bins)
+    most = std::max(most, bin.sure + bin.unsure);
   canvas.text({static_cast<double>(rect.x), rect.y - 8.0}, "cells by their change",
               {13.0, palette::kInk, true, Align::kLeft});
   const auto edge = [&](int i) { return rect.x + i * rect.width / kBins; };
   for (int i = 0; i < kBins; ++i) {
-    const Bin& bin = bins[static_cast<std::size_t>(i)];
+    const change::Distribution::Bin& bin = cells.bins[static_cast<std::size_t>(i)];
     const int sure = static_cast<int>(std::lround(rect.height * bin.sure / most));
     const int all = static_cast<int>(std::lround(rect.height * (bin.sure + bin.unsure) / most));
     const int bottom = rect.y + rect.height;
@@ -146,7 +124,7 @@ void drawHistogram(PictureCanvas& canvas, const PixelRect& rect, const change::H
   const double base = rect.y + rect.height;
   canvas.lines(std::array<Eigen::Vector2d, 2>{{{1.0 * rect.x, base}, {1.0 * edge(kBins), base}}},
                {1.0, palette::kFaint, {}});
-  drawMarks(canvas, rect, reach);
+  drawMarks(canvas, rect, cells.reach);
 }
 
 void drawSide(PictureCanvas& canvas, const ChangeScene& scene, int top, double reach) {
@@ -161,7 +139,7 @@ void drawSide(PictureCanvas& canvas, const ChangeScene& scene, int top, double r
   canvas.text({kSide + 34.0, top + 84.0}, "no more than its errors (95 %)", {});
   canvas.frame({kSide, top + 96, 26, 15}, {1.0, hexColour(0x8a9099), {}});
   canvas.text({kSide + 34.0, top + 108.0}, "not compared", {});
-  drawHistogram(canvas, {kSide, top + 154, kSideWidth, 130}, scene.change, reach);
+  drawHistogram(canvas, {kSide, top + 154, kSideWidth, 130}, scene.change);
   double y = top + 340.0;
   for (const std::string& fact : scene.facts) {
     for (const std::string& line : canvas.wrapped(fact, kSideWidth, {})) {
@@ -185,7 +163,7 @@ void writeChangePicture(const io::OutputPath& path, const ChangeScene& scene) {
   none.status = verdict::Status::kAccepted;
   Page page(height + kMargin, "Change between two maps", scene.subtitle, none, false);
   const View view = fitView({kMargin, page.top, kMapWidth, height}, ground);
-  const double reach = reachOf(scene.change);
+  const double reach = change::reachOf(scene.change.change);
   drawMap(page.canvas, scene, view, reach);
   drawSide(page.canvas, scene, page.top, reach);
   page.canvas.write(path);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "agricolmap/core/round_step.hpp"
 #include "agricolmap/report/draw/page.hpp"
 #include "agricolmap/report/pictures/picture_kinds.hpp"
 

@@ -122,6 +122,28 @@ export function sureSection(report, facts) {
       `and correlate by ${fixed(report.residuals?.correlation, 2)} there.`));
 }
 
+/** How many cells changed by how much, those beyond their errors apart. */
+export function changeChart({ reach_m: reach, sure, unsure }) {
+  const height = 240;
+  const most = Math.max(1, ...sure.map((value, i) => value + unsure[i]));
+  const plot = axes(height, [-100 * reach, 100 * reach], [0, 100], "change of the surface [cm]", "cells [% of the fullest]");
+  const { x, y, parts } = plot;
+  const wide = (2 * reach * 100) / sure.length;
+  const all = sure.reduce((sum, value, i) => sum + value + unsure[i], 0);
+  for (const [i, value] of sure.entries()) {
+    const [from, to] = [-100 * reach + i * wide, -100 * reach + (i + 1) * wide];
+    const [low, high] = [(100 * value) / most, (100 * (value + unsure[i])) / most];
+    const edge = i === 0 ? "and less" : i === sure.length - 1 ? "and more" : `to ${fixed(to, 1)} cm`;
+    const words = `${fixed(i === 0 ? to : from, 1)} cm ${edge}: ${percent((value + unsure[i]) / all)} of the cells, ` +
+      `${percent(value / Math.max(1, value + unsure[i]))} of them by more than their errors.`;
+    parts.push(svg("g", { class: "mark cells", tabindex: "0", role: "img", "aria-label": words, "data-words": words },
+      svg("rect", { x: x(from), y: TOP, width: x(to) - x(from), height: height - TOP - BOTTOM, fill: "transparent" }),
+      svg("rect", { class: "unsure", x: x(from) + 0.5, y: y(high), width: x(to) - x(from) - 1, height: y(low) - y(high) }),
+      svg("rect", { class: from + to < 0 ? "fell" : "rose", x: x(from) + 0.5, y: y(low), width: x(to) - x(from) - 1, height: y(0) - y(low) })));
+  }
+  return figure("Cells by their change", height, parts, "Cells by their change; grey: by no more than their errors. Point at a bar, or tab to it.");
+}
+
 const AXES = [["east", "x", 0], ["north", "y", 1], ["up", "z", 2]];
 
 function bendLine(nodes, axis, { x, y }) {

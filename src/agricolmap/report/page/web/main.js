@@ -2,6 +2,8 @@
 
 import { el } from "./dom.js";
 import { batchParts } from "./batch.js";
+import { changeParts } from "./change.js";
+import { factsParts } from "./facts.js";
 import { registrationParts } from "./registration.js";
 import { sharedMapParts } from "./shared_map.js";
 
@@ -12,6 +14,8 @@ const KINDS = {
   "agricolmap-registration": ["registration report", registrationParts],
   "agricolmap-batch-summary": ["batch report", batchParts],
   "agricolmap-map": ["map of a field", sharedMapParts],
+  "agricolmap-facts": ["crop facts", factsParts],
+  "agricolmap-change": ["change of a field", changeParts],
 };
 
 function build() {

@@ -7,8 +7,9 @@ import { fixed } from "./format.js";
 
 const LAYERS = [["colour", "Colour"], ["exg", "Excess Green"], ["height", "Height"]];
 
-export function rampLegend(layer, [low, high]) {
-  const ends = layer === "exg" ? ["soil", "plants"] : [`${fixed(low, 2)} m`, `${fixed(high, 2)} m`];
+/** `words`: of both ends, where they are no metres. */
+export function rampLegend(layer, [low, high], words = undefined) {
+  const ends = words ?? (["exg", "green"].includes(layer) ? ["soil", "plants"] : [`${fixed(low, 2)} m`, `${fixed(high, 2)} m`]);
   return el("p", { class: "ramp" }, el("span", {}, ends[0]),
     el("span", { class: "bar", "aria-hidden": "true",
       style: `background:linear-gradient(to right,${RAMPS[layer].map((c) => `#${c}`)})` }),

@@ -19,11 +19,14 @@ function roundStep(most) {
 }
 
 export class MapView {
-  /** `scene`: `base`, pictures, coarsest first; `sides(swipe)`: what lies left and right. */
+  /**
+   * `scene`: `base`, pictures, coarsest first; `sides(swipe)`: what lies left and right. Where it has them:
+   * `overlay(context, view, this)` draws over both sides, `onpick(local)` hears of clicks, `keys` of keys.
+   */
   constructor(scene, state) {
     this.scene = scene;
     this.state = state;
-    this.canvas = el("canvas", { tabindex: "0", role: "img", "aria-describedby": "map-keys",
+    this.canvas = el("canvas", { tabindex: "0", role: scene.role ?? "img", "aria-describedby": "map-keys",
       "aria-label": scene.label });
     this.handle = el("div", { class: "swipe", role: "slider", tabindex: "0",
       "aria-label": "Swipe between the two sides", "aria-valuemin": "0", "aria-valuemax": "100" },
@@ -66,6 +69,26 @@ export class MapView {
     this.draw();
   }
 
+  /** Brings a thing in sight where it is not, lies under the handle or is too small to be made out. */
+  show(points) {
+    const [x0, y0, x1, y1] = bounds(points);
+    const [left, top] = this.localAt(24, 24);
+    const [right, bottom] = this.localAt(this.width - 24, this.height - 24);
+    const size = Math.max(x1 - x0, y1 - y0);
+    const inside = x0 >= left && x1 <= right && y0 >= bottom && y1 <= top;
+    const handle = this.localAt(this.swipe * this.width, 0)[0];
+    const covered = Math.max(Math.abs(x0 - handle), Math.abs(x1 - handle)) * this.scale < 30;
+    if (inside && !covered && Math.max(size, 0.1) * this.scale >= 24) return;
+    const fitting = (0.7 * Math.min(this.width, this.height)) / Math.max(size, 0.01);
+    this.scale = Math.min(fitting, Math.max(this.scale, 120));
+    // What is small comes to lie beside the handle.
+    const half = 0.5 * size * this.scale;
+    const isSmall = half < 0.15 * this.width && Math.abs(this.swipe - 0.5) < 0.1;
+    const aside = isSmall ? Math.max(0.12 * this.width, half + 40) / this.scale : 0;
+    this.centre = [(x0 + x1) / 2 + aside, (y0 + y1) / 2];
+    this.draw();
+  }
+
   /** Local coordinates to canvas pixels, as for setTransform. */
   view() {
     const s = this.scale * this.ratio;
@@ -89,6 +112,7 @@ export class MapView {
     const [left, right] = this.scene.sides(this.state);
     this.side(context, left, 0, at, view);
     this.side(context, right, at, this.canvas.width, view);
+    this.scene.overlay?.(context, view, this);
     this.scaleBar(context);
     this.handle.style.left = `${100 * this.swipe}%`;
     this.handle.setAttribute("aria-valuenow", String(Math.round(100 * this.swipe)));
@@ -158,6 +182,23 @@ export class MapView {
     }
   }
 
+  /** Marks a place. */
+  cross(context, view, place) {
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    const [x, y] = apply(view, place);
+    const [near, far] = [4 * this.ratio, 13 * this.ratio];
+    const path = new Path2D();
+    for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      path.moveTo(x + near * dx, y + near * dy);
+      path.lineTo(x + far * dx, y + far * dy);
+    }
+    for (const [width, colour] of [[5, "#000000d0"], [2.5, "#00e5ff"]]) {
+      context.lineWidth = width * this.ratio;
+      context.strokeStyle = colour;
+      context.stroke(path);
+    }
+  }
+
   scaleBar(context) {
     const step = roundStep(140 / this.scale);
     context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
@@ -202,11 +243,13 @@ export class MapView {
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       this.pointers.set(event.pointerId, at(event));
+      this.pressed = this.pointers.size === 1 ? at(event) : null;
     });
     canvas.addEventListener("pointermove", (event) => {
       this.say(...at(event));
       if (this.pointers.has(event.pointerId)) this.drag(event.pointerId, at(event));
     });
+    canvas.addEventListener("pointerup", (event) => this.released(at(event)));
     for (const name of ["pointerup", "pointercancel"]) {
       canvas.addEventListener(name, (event) => this.pointers.delete(event.pointerId));
     }
@@ -238,6 +281,13 @@ export class MapView {
     });
   }
 
+  /** What was pressed and hardly moved is a click. */
+  released(to) {
+    const moved = this.pressed ? Math.hypot(to[0] - this.pressed[0], to[1] - this.pressed[1]) : Infinity;
+    this.pressed = null;
+    if (moved < 6) this.scene.onpick?.(this.localAt(...to));
+  }
+
   /** One finger pans, two zoom, too. */
   drag(id, to) {
     const from = this.pointers.get(id);
@@ -258,6 +308,7 @@ export class MapView {
       ArrowUp: () => this.pan(0, step), ArrowDown: () => this.pan(0, -step),
       "+": () => this.zoom(STEP), "=": () => this.zoom(STEP), "-": () => this.zoom(1 / STEP),
       0: () => this.fitTo(this.scene.focus),
+      ...this.scene.keys,
     };
     if (event.ctrlKey || event.metaKey || event.altKey || !actions[event.key]) return;
     event.preventDefault();
