@@ -107,24 +107,31 @@ TEST(WithDrift, ComesOnTopOfWhatTheGuessMayBeWrongBy) {
   EXPECT_NEAR(withDrift(prior, 0.0).scale, prior.scale, 1e-12);
 }
 
-TEST(PathOf, SaysWhatAPathIsGoodFor) {
+TEST(PathOf, IsGivenOrThatOfALongStripsShape) {
   RegistrationOptions options;
   Cloud moving;
   moving.name = "robot.ply";
   Monitor monitor;
   const PairMaps short_strip = pairOf(8.0);
   EXPECT_FALSE(pathOf(moving, {}, short_strip, options, monitor));
+  const std::vector<Eigen::Vector3d> places = {{0.0, 0.1, 0.0}, {8.0, 0.1, 0.0}};
+  const auto driven = pathOf(moving, places, short_strip, options, monitor);
+  ASSERT_TRUE(driven);
+  EXPECT_NEAR(driven->length(), 8.0, 0.2);
   EXPECT_TRUE(monitor.warnings().empty());
-  EXPECT_FALSE(pathOf(moving, {{0.0, 0.0, 0.0}, {8.0, 0.0, 0.0}}, short_strip, options, monitor));
+  RegistrationOptions by_flow = options;
+  by_flow.association = AssociationKind::kFlow;
+  EXPECT_FALSE(pathOf(moving, places, short_strip, by_flow, monitor));
   ASSERT_EQ(monitor.warnings().size(), 1U);
   EXPECT_THAT(monitor.warnings()[0], HasSubstr("no difference"));
   const PairMaps maps = pairOf(40.0);
   const auto shape = pathOf(moving, {}, maps, options, monitor);
   ASSERT_TRUE(shape);
   EXPECT_NEAR(shape->length(), 40.0, 1.0);
-  const auto given = pathOf(moving, {{1.0, 0.2, 5.0}, {39.0, 0.2, 5.0}}, maps, options, monitor);
+  // As far as the strip shows it.
+  const auto given = pathOf(moving, {{-7.0, 0.2, 5.0}, {39.0, 0.2, 5.0}}, maps, options, monitor);
   ASSERT_TRUE(given);
-  EXPECT_NEAR(given->length(), 38.0, 1e-9);
+  EXPECT_NEAR(given->length(), 40.0, 0.2);
   EXPECT_THROW(pathOf(moving, {{0.0, 90.0, 0.0}, {40.0, 90.0, 0.0}}, maps, options, monitor),
                InputError);
   // A blob says what helps.
