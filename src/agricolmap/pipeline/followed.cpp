@@ -29,11 +29,14 @@ std::vector<deform::PieceOffset> piecesOf(const verdict::Evidence& evidence,
   return pieces;
 }
 
-/// Whether the strip, bend taken out, is one and fits no worse.
+/// Whether the strip, bend taken out, is one and fits no worse. One block may change sides by
+/// chance.
 bool fitsAsOne(const Placed& straight, const Placed& bent) {
+  const double one =
+      1.0 / static_cast<double>(std::max<std::size_t>(1, bent.evidence.blocks.size()));
   return straight.uncertainty && bent.uncertainty && !straight.evidence.parts.apart() &&
          straight.heights.status == refine::VerticalStatus::kOk &&
-         straight.evidence.agreement() >= bent.evidence.agreement() - 1e-9 &&
+         straight.evidence.agreement() >= bent.evidence.agreement() - 1.01 * one &&
          straight.evidence.significance >= kLeastKept * bent.evidence.significance &&
          straight.correlation >= bent.correlation - kMostLost;
 }
