@@ -11,7 +11,6 @@ namespace {
 /// What may be lost in drawing the straightened map: of the significance, which hangs on the finest
 /// that the maps show, and of the correlation.
 constexpr double kLeastKept = 0.8;
-constexpr double kClearGain = 1.1;
 constexpr double kMostLost = 0.01;
 /// A slip has a place and an offset.
 constexpr double kFreedomOfSlip = 3.0;
@@ -30,15 +29,12 @@ std::vector<deform::PieceOffset> piecesOf(const verdict::Evidence& evidence,
   return pieces;
 }
 
-/// Whether the strip, bend taken out, is one and fits no worse. Where all of it fits clearly better
-/// one block may have changed sides by chance.
+/// Whether the strip, bend taken out, is one and fits no worse.
 bool fitsAsOne(const Placed& straight, const Placed& bent) {
-  const double gain = straight.evidence.significance / bent.evidence.significance;
-  const auto blocks = static_cast<double>(std::max<std::size_t>(1, bent.evidence.blocks.size()));
-  const double lost = bent.evidence.agreement() - straight.evidence.agreement();
   return straight.uncertainty && bent.uncertainty && !straight.evidence.parts.apart() &&
          straight.heights.status == refine::VerticalStatus::kOk &&
-         lost <= (gain >= kClearGain ? 1.01 / blocks : 1e-9) && gain >= kLeastKept &&
+         straight.evidence.agreement() >= bent.evidence.agreement() - 1e-9 &&
+         straight.evidence.significance >= kLeastKept * bent.evidence.significance &&
          straight.correlation >= bent.correlation - kMostLost;
 }
 
