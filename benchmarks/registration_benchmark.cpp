@@ -140,8 +140,7 @@ void verdict(benchmark::State& state) {
     Monitor monitor;
     const pipeline::Measured measured =
         pipeline::measureStraightened(signals, r.maps.space, refined, scene.options, monitor);
-    benchmark::DoNotOptimize(
-        pipeline::judgePlaced(measured.placed, {}, r.maps.space, scene.options));
+    benchmark::DoNotOptimize(pipeline::judgePlaced(measured.placed, {}, r.maps, scene.options));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/random.hpp"
 #include "agricolmap/core/transform.hpp"
+#include "agricolmap/core/xml_text.hpp"
 
 namespace agricolmap {
 namespace {
@@ -123,6 +124,11 @@ TEST(Parallel, StopsWhenItsScopeIsStoppedAndNoOther) {
   std::atomic<int> calls{0};
   parallelFor(10, [&](std::size_t) { ++calls; });
   EXPECT_EQ(calls, 10);
+}
+
+TEST(XmlText, EscapesWhatXmlCannotHold) {
+  EXPECT_EQ(xmlText("a < b & \"c\" > d\x01\n"), "a &lt; b &amp; &quot;c&quot; &gt; d  ");
+  EXPECT_EQ(xmlText("Rüben, 1 µm"), "Rüben, 1 µm");
 }
 
 TEST(Random, IsTheSameEverywhere) {

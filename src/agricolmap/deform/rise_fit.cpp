@@ -26,7 +26,7 @@ constexpr int kRounds = 4;
 struct Pair {
   float moving;
   float fixed;
-  float difference;  ///< fixed − moving − the whole's heights
+  float difference;  ///< fixed − the whole's heights, in the moving map's scale, − moving
 };
 
 /// Difference of the grounds in a bin; NaN where it is not seen.
@@ -71,7 +71,7 @@ std::vector<double> groundDifferences(const map::GridMap& fixed, const map::Grid
           static_cast<float>(heights.offset + heights.slope.dot(lies - heights.about));
       const float here = moving.height(r, c), there = fixed.height(row, col);
       bins[static_cast<std::size_t>(place.aside >= 0.0 ? layout.count + along : along)].push_back(
-          {here, there, there - here - whole});
+          {here, there, (there - whole) / static_cast<float>(heights.scale) - here});
     }
   }
   std::vector<double> differences;

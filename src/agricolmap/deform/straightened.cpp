@@ -29,8 +29,8 @@ std::string describe(const Bend& bend) {
   }
   if (!text.empty()) text += " and ";
   return text + fmt::format(
-                    "a bend of the strip, together up to {:.1f} cm beside the best affine, {} "
-                    "followed: left-out blocks confirm it",
+                    "a bend of the strip, together up to {:.1f} cm off the best single "
+                    "transformation, {} followed: blocks that were left out of the fit confirm it",
                     100.0 * bend.most, text.empty() ? "is" : "are");
 }
 

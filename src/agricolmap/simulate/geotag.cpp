@@ -34,6 +34,8 @@ Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, d
   const double aside = random.chance(0.5) ? options.across_rows : -options.across_rows;
   error += aside * Eigen::Vector3d(std::cos(across_rows), std::sin(across_rows), 0.0);
   const double factor = std::pow(options.unknown_scale, random.uniform(-1.0, 1.0));
+  // Last, so that what is drawn before stays as it was.
+  const double scale_z = 1.0 + signedError(options.vertical_scale);
 
   // The prior places the centre `error` away and takes heading, level and scale at face value.
   Geotag tag;
@@ -43,7 +45,7 @@ Geotag drawGeotag(const GeotagOptions& options, const Eigen::Vector3d& centre, d
   }
   const Eigen::Vector3d file_centre = tag.prior.inverse() * Eigen::Vector3d(centre + error);
   // Lengths in the file are those of the field times the scale error, by `factor` too small.
-  const Eigen::Vector3d unscale(factor / scale_x, factor / scale_y, factor);
+  const Eigen::Vector3d unscale(factor / scale_x, factor / scale_y, factor / scale_z);
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()) *
                                 Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
                                 Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))

@@ -221,6 +221,23 @@ TEST(Geotag, CanMissByRowsAndLoseItsUnit) {
   EXPECT_GT(largest / smallest, 3.0);
 }
 
+TEST(Geotag, HasAVerticalScaleOfItsOwn) {
+  SimulationOptions options = smallOptions(Crop::kSugarBeet10m);
+  options.geotag.tilt_deg = 0.0;
+  const SimulatedField field(options);
+  const auto upOf = [](const SimulatedStrip& strip) {
+    return strip.nominal.linear().col(2).norm();
+  };
+  const SimulatedStrip metres = field.strip(options);
+  EXPECT_NEAR(upOf(metres), 1.0, 1e-9);
+  options.geotag.vertical_scale = 0.2;
+  const SimulatedStrip stretched = field.strip(options);
+  EXPECT_NEAR(std::abs(1.0 / upOf(stretched) - 1.0), 0.2, 1e-9);
+  // All else is as it was.
+  EXPECT_TRUE(
+      stretched.nominal.linear().leftCols<2>().isApprox(metres.nominal.linear().leftCols<2>()));
+}
+
 TEST(Simulate, PlantsHideTheGroundBehindThem) {
   // Cells that the drone fills and the robot does not: many more with a low camera in a tall crop.
   const auto missing = [](double camera_height) {

@@ -167,6 +167,7 @@ void listOptions(OptionTable& t, GeotagOptions& o) {
   t.number("heading_deg", o.heading_deg, 0.0, 180.0, "deg", "heading error, random sign").basic();
   t.number("scale", o.scale, 0.0, 0.9, "", "scale error per horizontal axis, random signs").basic();
   t.number("z", o.z, 0.0, 100.0, "m", "vertical error, random sign");
+  t.number("vertical_scale", o.vertical_scale, 0.0, 0.9, "", "vertical scale error, random sign");
   t.number("tilt_deg", o.tilt_deg, 0.0, 30.0, "deg", "roll and pitch error, random signs");
   t.number("across_rows", o.across_rows, 0.0, 100.0, "m",
            "further error at the centre, across the rows, random sign");

@@ -167,12 +167,13 @@ void listOptions(OptionTable& table, UgvOptions& options);
 
 /// Error of the initial guess, see SimulatedPair::prior.
 struct GeotagOptions {
-  double translation = 1.0;  ///< horizontal error at the strip's centre [m]
-  double heading_deg = 2.0;  ///< [°], random sign
-  double scale = 0.05;       ///< on the UGV file's x and y axes, signs independent
-  double z = 0.3;            ///< vertical error [m], random sign
-  double tilt_deg = 0.5;     ///< roll and pitch error [°], random signs
-  double across_rows = 0.0;  ///< further error at the centre, across the rows, random sign [m]
+  double translation = 1.0;     ///< horizontal error at the strip's centre [m]
+  double heading_deg = 2.0;     ///< [°], random sign
+  double scale = 0.05;          ///< on the UGV file's x and y axes, signs independent
+  double z = 0.3;               ///< vertical error [m], random sign
+  double vertical_scale = 0.0;  ///< on the UGV file's z axis, random sign
+  double tilt_deg = 0.5;        ///< roll and pitch error [°], random signs
+  double across_rows = 0.0;     ///< further error at the centre, across the rows, random sign [m]
   /// The UGV file's unit is unknown: all its lengths are divided by a factor between 1/this and
   /// this, log-uniform, of which the prior knows nothing. 1: metres.
   double unknown_scale = 1.0;

@@ -41,6 +41,7 @@ class MappedSource : public PointSource {
   ColourKind colourKind() const override { return source_->colourKind(); }
   bool floatCoordinates() const override { return source_->floatCoordinates(); }
   bool dear() const override { return true; }
+  bool marked() const override { return source_->marked(); }
   void decode(std::size_t chunk, const Sink& sink) const override {
     source_->decode(chunk, [&](const PointBlock& block) {
       PointBlock mapped = block;

@@ -51,32 +51,38 @@ struct ChunkFacts {
 /// Gathers a chunk's points until they are worth a call of the system.
 class SpillWriter {
  public:
-  SpillWriter(PointSpill& spill, std::size_t first, bool coloured)
-      : spill_(spill), first_(first), coloured_(coloured) {}
+  SpillWriter(PointSpill& spill, std::size_t first, PointSpill::Kind kind)
+      : spill_(spill), first_(first), kind_(kind) {}
   void add(const TakenPoints& taken) {
-    xyz_.insert(xyz_.end(), taken.xyz.begin(), taken.xyz.begin() + taken.count);
-    if (coloured_) rgb_.insert(rgb_.end(), taken.rgb.begin(), taken.rgb.begin() + taken.count);
+    const auto append = [&](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.begin() + taken.count);
+    };
+    append(xyz_, taken.xyz);
+    if (kind_.coloured) append(rgb_, taken.rgb);
+    if (kind_.marked) append(marks_, taken.marks);
     if (xyz_.size() >= kPiece) flush();
   }
   void flush() {
-    spill_.write(first_, xyz_, rgb_);
+    spill_.write(first_, xyz_, rgb_, marks_);
     first_ += xyz_.size();
     xyz_.clear();
     rgb_.clear();
+    marks_.clear();
   }
 
  private:
   PointSpill& spill_;
   std::size_t first_;
-  bool coloured_;
+  PointSpill::Kind kind_;
   std::vector<Eigen::Vector3f> xyz_;
   std::vector<Rgb> rgb_;
+  std::vector<PointMarks> marks_;
 };
 
 /// What becomes of decoded points that are dear.
 enum class Dear { kSpilled, kForgotten };
 
-class FileStream : public PointStream {
+class FileStream : public MarkedStream {
  public:
   FileStream(std::unique_ptr<MappedFile> mapped, PointFile file, const StreamOptions& options,
              Dear dear)
@@ -95,7 +101,12 @@ class FileStream : public PointStream {
 
   const CloudFacts& facts() const override { return facts_; }
   Box3 box() const override { return box_; }
-  void pass(const Visit& visit) const override;
+  void pass(const Visit& visit) const override {
+    passAll(false, [&](const PointBatch& batch, std::span<const PointMarks>) { visit(batch); });
+  }
+  void passMarked(const MarkedVisit& visit) const override {
+    passAll(file_.source->marked(), visit);
+  }
 
  private:
   /// Points that are loaded together.
@@ -106,10 +117,20 @@ class FileStream : public PointStream {
   };
   /// Part of the cloud that is in memory.
   struct Loaded {
+    bool coloured = false;
+    bool marked = false;
     std::vector<Eigen::Vector3f> xyz;
     std::vector<Rgb> rgb;
+    std::vector<PointMarks> marks;
     std::size_t first = 0;  ///< its first point in the cloud
     std::size_t count = 0;
+
+    void makeRoom(std::size_t points);
+    PointBatch batch(std::size_t points) const;
+    std::span<const PointMarks> marksOf(std::size_t points) const {
+      return std::span(marks).first(marked ? points : 0);
+    }
+    void dropFirst(std::size_t points);
   };
 
   static Tally total(const std::vector<ChunkFacts>& chunks) {
@@ -117,7 +138,10 @@ class FileStream : public PointStream {
     for (const ChunkFacts& chunk : chunks) sum += chunk.tally;
     return sum;
   }
-  bool hasChannels() const { return file_.source->colourKind() != ColourKind::kNone; }
+  /// Of what is spilled: before all colours were seen nobody knows whether they are any.
+  PointSpill::Kind kind() const {
+    return {file_.source->colourKind() != ColourKind::kNone, file_.source->marked()};
+  }
   void tell(std::size_t seen) const {
     if (on_pass_) on_pass_(seen, file_.source->points());
   }
@@ -127,7 +151,8 @@ class FileStream : public PointStream {
   void cutIntoPieces(const std::vector<ChunkFacts>& chunks);
   void setFacts(const std::vector<ChunkFacts>& chunks, const Crs& crs);
   std::size_t load(std::size_t begin, Loaded& loaded) const;
-  void loadPiece(const Piece& piece, Eigen::Vector3f* xyz, Rgb* rgb) const;
+  void loadPiece(const Piece& piece, Loaded& loaded) const;
+  void passAll(bool marked, const MarkedVisit& visit) const;
 
   std::unique_ptr<MappedFile> mapped_;
   PointFile file_;
@@ -145,7 +170,7 @@ std::vector<ChunkFacts> FileStream::lookAtAll() {
   const PointSource& source = *file_.source;
   if (spills_) {
     spill_.reset();  // there need not be room for both
-    spill_ = std::make_unique<PointSpill>(source.points(), hasChannels(), file_.name);
+    spill_ = std::make_unique<PointSpill>(source.points(), kind(), file_.name);
   }
   std::vector<ChunkFacts> chunks(source.chunks());
   const std::size_t group = source.dear() ? kDearGroup : kCheapGroup;
@@ -165,7 +190,7 @@ ChunkFacts FileStream::lookAt(std::size_t chunk) const {
                             [&](const TakenPoints& taken) { extend(taken, facts.box); });
     return facts;
   }
-  SpillWriter writer(*spill_, file_.source->firstPoint(chunk), hasChannels());
+  SpillWriter writer(*spill_, file_.source->firstPoint(chunk), kind());
   facts.tally = takeChunk(*file_.source, chunk, taking_, [&](const TakenPoints& taken) {
     extend(taken, facts.box);
     writer.add(taken);
@@ -204,16 +229,52 @@ void FileStream::setFacts(const std::vector<ChunkFacts>& chunks, const Crs& crs)
   facts_.fields = file_.fields;
 }
 
-void FileStream::loadPiece(const Piece& piece, Eigen::Vector3f* xyz, Rgb* rgb) const {
+void FileStream::Loaded::makeRoom(std::size_t points) {
+  const auto enlarge = [&](auto& values) {
+    if (values.size() < points) values.resize(points);
+  };
+  enlarge(xyz);
+  if (coloured) enlarge(rgb);
+  if (marked) enlarge(marks);
+}
+
+PointBatch FileStream::Loaded::batch(std::size_t points) const {
+  PointBatch batch{std::span(xyz).first(points), {}, first};
+  if (coloured) batch.rgb = std::span(rgb).first(points);
+  return batch;
+}
+
+void FileStream::Loaded::dropFirst(std::size_t points) {
+  const std::size_t rest = count - points;
+  const auto drop = [&](auto& values) {
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(points), rest, values.begin());
+  };
+  drop(xyz);
+  if (coloured) drop(rgb);
+  if (marked) drop(marks);
+  first += points;
+  count = rest;
+}
+
+void FileStream::loadPiece(const Piece& piece, Loaded& loaded) const {
+  const std::size_t at = piece.begin - loaded.first;
+  const auto part = [&](auto& values, bool wanted) {
+    return std::span(values).subspan(wanted ? at : 0, wanted ? piece.count : 0);
+  };
+  const auto xyz = part(loaded.xyz, true);
+  const auto rgb = part(loaded.rgb, loaded.coloured);
+  const auto marks = part(loaded.marks, loaded.marked);
   if (spill_) {
-    spill_->read(piece.place, {xyz, piece.count}, {rgb, facts_.coloured ? piece.count : 0});
+    spill_->read(piece.place, xyz, rgb, marks);
     return;
   }
   std::size_t done = 0;
   takeChunk(*file_.source, piece.place, taking_, [&](const TakenPoints& taken) {
     const std::size_t count = std::min(taken.count, piece.count - done);
-    std::copy_n(taken.xyz.begin(), count, xyz + done);
-    if (facts_.coloured) std::copy_n(taken.rgb.begin(), count, rgb + done);
+    const auto to = static_cast<std::ptrdiff_t>(done);
+    std::copy_n(taken.xyz.begin(), count, xyz.begin() + to);
+    if (loaded.coloured) std::copy_n(taken.rgb.begin(), count, rgb.begin() + to);
+    if (loaded.marked) std::copy_n(taken.marks.begin(), count, marks.begin() + to);
     done += count;
   });
   if (done == piece.count) return;
@@ -225,33 +286,24 @@ std::size_t FileStream::load(std::size_t begin, Loaded& loaded) const {
   std::size_t end = begin;
   std::size_t count = loaded.count;
   while (end < pieces_.size() && count < kBatch) count += pieces_[end++].count;
-  if (loaded.xyz.size() < count) loaded.xyz.resize(count);
-  if (facts_.coloured && loaded.rgb.size() < count) loaded.rgb.resize(count);
-  parallelFor(end - begin, [&](std::size_t i) {
-    const Piece& piece = pieces_[begin + i];
-    const std::size_t at = piece.begin - loaded.first;
-    loadPiece(piece, loaded.xyz.data() + at, facts_.coloured ? loaded.rgb.data() + at : nullptr);
-  });
+  loaded.makeRoom(count);
+  parallelFor(end - begin, [&](std::size_t i) { loadPiece(pieces_[begin + i], loaded); });
   if (!spill_) mapped_->release();
   loaded.count = count;
   return end;
 }
 
-void FileStream::pass(const Visit& visit) const {
+void FileStream::passAll(bool marked, const MarkedVisit& visit) const {
   Loaded loaded;
+  loaded.coloured = facts_.coloured;
+  loaded.marked = marked;
   // Asked before anything is looked at: of a file that was cut off meanwhile nothing is there.
   if (!spill_) mapped_->release();
   for (std::size_t next = 0; next < pieces_.size() || loaded.count > 0;) {
     next = load(next, loaded);
     const std::size_t count = std::min(kBatch, loaded.count);
-    const std::size_t rest = loaded.count - count;
-    PointBatch batch{std::span(loaded.xyz).first(count), {}, loaded.first};
-    if (facts_.coloured) batch.rgb = std::span(loaded.rgb).first(count);
-    visit(batch);
-    std::copy_n(loaded.xyz.begin() + count, rest, loaded.xyz.begin());
-    if (facts_.coloured) std::copy_n(loaded.rgb.begin() + count, rest, loaded.rgb.begin());
-    loaded.first += count;
-    loaded.count = rest;
+    visit(loaded.batch(count), loaded.marksOf(count));
+    loaded.dropFirst(count);
     tell(loaded.first == facts_.points ? file_.source->points() : loaded.first);
   }
 }
@@ -262,7 +314,7 @@ std::unique_ptr<PointStream> streamCloud(const std::filesystem::path& path,
                                          const StreamOptions& options) {
   auto mapped = std::make_unique<MappedFile>(path);
   PointFile file = openPoints(*mapped, path.string(), options.read);
-  if (file.source->points() > options.keep) {
+  if (file.source->points() > options.keep || file.source->marked()) {
     return std::make_unique<FileStream>(std::move(mapped), std::move(file), options,
                                         Dear::kSpilled);
   }

@@ -21,6 +21,8 @@ constexpr auto kScales = makeScales();
 
 }  // namespace
 
+ColourScale scaleOfRange(std::size_t range) { return kScales[range]; }
+
 void ColourTally::take(float least, float most) {
   coloured += least != 0.0F || most != 0.0F ? 1 : 0;
   for (std::size_t i = 0; i < kScales.size(); ++i) {

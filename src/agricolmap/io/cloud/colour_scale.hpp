@@ -2,6 +2,7 @@
 // nearly all of their colours tell is believed, and no single one decides.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,14 @@ struct ColourScale {
 
   bool holds(float least, float most) const { return least >= low && most <= high; }
 };
+
+/// That of kColourRanges[range].
+ColourScale scaleOfRange(std::size_t range);
+
+/// A wide channel in 0–255, by the `factor` of its range.
+inline std::uint8_t narrowed(float wide, float factor) {
+  return static_cast<std::uint8_t>(std::clamp(factor * wide + 0.5F, 0.0F, 255.0F));
+}
 
 /// Which ranges the colours of many points fit.
 struct ColourTally {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "agricolmap/core/cloud.hpp"
+#include "agricolmap/io/cloud/point_marks.hpp"
 #include "agricolmap/io/cloud/read_options.hpp"
 #include "agricolmap/io/text/mapped_file.hpp"
 
@@ -39,6 +40,10 @@ enum class ColourKind {
   kWideFloat,    ///< 0–1, or 0–255 when the file's largest value is above 1
 };
 
+inline bool isWide(ColourKind kind) {
+  return kind == ColourKind::kWideInteger || kind == ColourKind::kWideFloat;
+}
+
 /// A few decoded points; small enough to stay in the cache.
 struct PointBlock {
   static constexpr std::size_t kCapacity = 512;
@@ -47,6 +52,7 @@ struct PointBlock {
   std::array<std::array<double, kCapacity>, 3> xyz;  ///< file coordinates [m]
   std::array<Rgb, kCapacity> rgb;                    ///< ColourKind::kByte
   std::array<std::array<float, kCapacity>, 3> wide;  ///< the wide kinds
+  std::array<PointMarks, kCapacity> marks;           ///< of a source that has some
 };
 
 /// The points of an open file. Chunks can be decoded from several threads at once.
@@ -67,6 +73,8 @@ class PointSource {
   /// Whether decoding takes longer than writing what comes of it and reading that again: what is
   /// compressed, text, reprojected. Else chunks have few points.
   virtual bool dear() const { return false; }
+  /// Whether blocks have marks.
+  virtual bool marked() const { return false; }
 };
 
 /// One value per point, `stride` bytes apart.

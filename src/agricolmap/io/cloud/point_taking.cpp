@@ -10,6 +10,7 @@
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/core/parallel.hpp"
+#include "agricolmap/io/cloud/plain_block.hpp"
 
 namespace agricolmap::io {
 namespace {
@@ -25,10 +26,6 @@ constexpr std::size_t kEnoughSamples = 100;
 /// From here on 32-bit floats are coarser than 0.8 cm.
 constexpr double kFarForFloat = 1e5;
 constexpr float kNoColour = std::numeric_limits<float>::quiet_NaN();
-
-bool isWide(ColourKind kind) {
-  return kind == ColourKind::kWideInteger || kind == ColourKind::kWideFloat;
-}
 
 Eigen::Vector3d pointOf(const PointBlock& block, std::size_t i) {
   return {block.xyz[0][i], block.xyz[1][i], block.xyz[2][i]};
@@ -130,11 +127,45 @@ std::optional<std::string> coarseness(const PointFile& file, const Eigen::Vector
       file.name, far, 100.0F * step);
 }
 
-Rgb narrow(const PointBlock& block, std::size_t i, float scale) {
-  const auto byte = [&](std::size_t c) {
-    return static_cast<std::uint8_t>(std::clamp(scale * block.wide[c][i] + 0.5F, 0.0F, 255.0F));
-  };
-  return {byte(0), byte(1), byte(2)};
+Rgb narrow(const PointBlock& block, std::size_t i, float factor) {
+  return {narrowed(block.wide[0][i], factor), narrowed(block.wide[1][i], factor),
+          narrowed(block.wide[2][i], factor)};
+}
+
+/// Takes those points of a block that are kept, one after the other.
+void takeEach(const PointBlock& block, ColourKind kind, bool marked, const Taking& taking,
+              Tally& tally, TakenPoints& taken) {
+  taken.count = 0;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const Eigen::Vector3d point = pointOf(block, i);
+    const Eigen::Vector3d local = point - taking.origin;
+    if (!within(local, kMaxFromOrigin)) {
+      tally.far += tellsPlace(point) ? 1 : 0;
+      continue;
+    }
+    tally.heights.take(point.z());
+    if (taking.hole && point.z() == *taking.hole) {
+      ++tally.holes;
+      continue;
+    }
+    if (isWide(kind)) {
+      const auto [least, most] = spanOf(block, i);
+      if (std::isnan(least)) continue;
+      tally.colours.take(least, most);
+      if (!taking.colours.holds(least, most)) {
+        ++tally.off_colour;
+        continue;
+      }
+    }
+    const std::size_t next = taken.count++;
+    taken.xyz[next] = local.cast<float>();
+    if (kind == ColourKind::kByte) {
+      taken.rgb[next] = block.rgb[i];
+    } else if (kind != ColourKind::kNone) {
+      taken.rgb[next] = narrow(block, i, taking.colours.factor);
+    }
+    if (marked) taken.marks[next] = block.marks[i];
+  }
 }
 
 /// What was left out, in words; throws where too much was.
@@ -222,40 +253,15 @@ Tally sumOf(const std::vector<Tally>& tallies) {
 Tally takeChunk(const PointSource& source, std::size_t chunk, const Taking& taking,
                 const std::function<void(const TakenPoints&)>& sink) {
   const ColourKind kind = source.colourKind();
-  const bool wide = isWide(kind);
+  const bool marked = source.marked();
   Tally tally;
   TakenPoints taken;
   source.decode(chunk, [&](const PointBlock& block) {
     tally.withheld += block.withheld;
-    taken.count = 0;
-    for (std::size_t i = 0; i < block.count; ++i) {
-      const Eigen::Vector3d point = pointOf(block, i);
-      const Eigen::Vector3d local = point - taking.origin;
-      if (!within(local, kMaxFromOrigin)) {
-        tally.far += tellsPlace(point) ? 1 : 0;
-        continue;
-      }
-      tally.heights.take(point.z());
-      if (taking.hole && point.z() == *taking.hole) {
-        ++tally.holes;
-        continue;
-      }
-      if (wide) {
-        const auto [least, most] = spanOf(block, i);
-        if (std::isnan(least)) continue;
-        tally.colours.take(least, most);
-        if (!taking.colours.holds(least, most)) {
-          ++tally.off_colour;
-          continue;
-        }
-      }
-      const std::size_t next = taken.count++;
-      taken.xyz[next] = local.cast<float>();
-      if (kind == ColourKind::kByte) {
-        taken.rgb[next] = block.rgb[i];
-      } else if (kind != ColourKind::kNone) {
-        taken.rgb[next] = narrow(block, i, taking.colours.factor);
-      }
+    if (takePlainBlock(block, kind, taking, tally, taken)) {
+      if (marked) std::copy_n(block.marks.begin(), block.count, taken.marks.begin());
+    } else {
+      takeEach(block, kind, marked, taking, tally, taken);
     }
     tally.kept += taken.count;
     sink(taken);

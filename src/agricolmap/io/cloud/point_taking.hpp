@@ -51,7 +51,8 @@ Tally sumOf(const std::vector<Tally>& tallies);
 struct TakenPoints {
   std::size_t count = 0;
   std::array<Eigen::Vector3f, PointBlock::kCapacity> xyz;
-  std::array<Rgb, PointBlock::kCapacity> rgb;  ///< undefined where the file has no colours
+  std::array<Rgb, PointBlock::kCapacity> rgb;           ///< undefined where the file has no colours
+  std::array<PointMarks, PointBlock::kCapacity> marks;  ///< of a source that has some
 };
 
 /// Hands those points of a chunk that are kept to `sink`, in order of the file.

@@ -16,6 +16,7 @@ class CoordinateMap {
 struct ReadOptions {
   bool colours = true;                 ///< read colours where the file has them
   const CoordinateMap* map = nullptr;  ///< applied in double before anything else
+  bool marks = false;                  ///< of LAS, for `passMarked`; a Cloud has none
 };
 
 }  // namespace agricolmap::io

@@ -50,5 +50,24 @@ TEST(LasFuzz, DamagedFilesAreReadOrRefused) {
   EXPECT_GT(survived.refused, 5000);
 }
 
+#ifdef AGRICOLMAP_HAS_LASZIP
+// LASzip 3.5 dereferences a null pointer where a file says that points of the extended formats were
+// compressed one by one.
+TEST(LasFuzz, ExtendedPointsThatClaimNoLayersAreRefused) {
+  const std::string user = "laszip encoded";
+  constexpr std::size_t kData = 52;  // of a record, behind the beginning of its user
+  const test::TempDir folder;
+  for (std::string file : validFiles()) {
+    const std::size_t at = file.find(user);
+    if (at == std::string::npos) continue;
+    const bool layered = file[at + kData] == 3;
+    file[at + kData] = layered ? 1 : 3;
+    const std::filesystem::path path = folder.write("claims.laz", file);
+    test::expectError<InputError>([&] { readCloud(path); },
+                                  {"claims.laz", layered ? "compressor 1" : "compressor 3"});
+  }
+}
+#endif
+
 }  // namespace
 }  // namespace agricolmap::io

@@ -42,6 +42,17 @@ LasOutline lifted(LasOutline outline) {
   return outline;
 }
 
+void liftStandard(const std::byte* record, const LasLayout& layout, std::byte* to) {
+  constexpr std::size_t kGpsTime = 22;
+  std::copy_n(record, 14, to);  // coordinates and intensity
+  if (layout.extended) {
+    std::copy_n(record + 14, 8, to + 14);
+  } else {
+    liftFlags(record, to);
+  }
+  if (layout.gps_time) std::copy_n(record + *layout.gps_time, 8, to + kGpsTime);
+}
+
 std::vector<std::byte> lifted(const std::vector<std::byte>& records, const LasLayout& from,
                               const LasLayout& to) {
   const std::size_t count = records.size() / from.length;
@@ -49,13 +60,7 @@ std::vector<std::byte> lifted(const std::vector<std::byte>& records, const LasLa
   for (std::size_t i = 0; i < count; ++i) {
     const std::byte* const source = &records[i * from.length];
     std::byte* const target = &all[i * to.length];
-    std::copy_n(source, 14, target);  // coordinates and intensity
-    if (from.extended) {
-      std::copy_n(source + 14, 8, target + 14);
-    } else {
-      liftFlags(source, target);
-    }
-    if (from.gps_time) std::copy_n(source + *from.gps_time, 8, target + *to.gps_time);
+    liftStandard(source, from, target);
     if (from.rgb) std::copy_n(source + *from.rgb, 6, target + *to.rgb);
     if (from.nir) std::copy_n(source + *from.nir, 2, target + *to.nir);
     std::copy_n(source + from.base, from.extraBytes(), target + to.base);

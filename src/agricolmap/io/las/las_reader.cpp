@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string_view>
 #include <utility>
 
 #include "agricolmap/io/las/las_header.hpp"
+#include "agricolmap/io/las/las_marks.hpp"
 #include "agricolmap/io/las/las_points.hpp"
 
 namespace agricolmap::io {
@@ -15,10 +17,11 @@ namespace {
 
 class LasSource : public PointSource {
  public:
-  LasSource(LasHeader header, std::unique_ptr<LasPoints> points, bool colours)
+  LasSource(LasHeader header, std::unique_ptr<LasPoints> points, const ReadOptions& options)
       : header_(std::move(header)),
         points_(std::move(points)),
-        colours_(colours && header_.layout.rgb) {}
+        colours_(options.colours && header_.layout.rgb),
+        marks_(options.marks) {}
 
   std::size_t points() const override { return static_cast<std::size_t>(header_.points); }
   std::size_t chunks() const override { return points_->chunks(); }
@@ -28,13 +31,18 @@ class LasSource : public PointSource {
   }
   bool floatCoordinates() const override { return false; }
   bool dear() const override { return header_.compressed; }
+  bool marked() const override { return marks_; }
 
   void decode(std::size_t chunk, const Sink& sink) const override {
     PointBlock block;
-    const LasWanted wanted = colours_ ? LasWanted::kPlaceColours : LasWanted::kPlace;
+    const LasWanted wanted = marks_     ? LasWanted::kAll
+                             : colours_ ? LasWanted::kPlaceColours
+                                        : LasWanted::kPlace;
     points_->decode(chunk, wanted, [&](const std::byte* records, std::size_t count) {
-      for (std::size_t i = 0; i < count; ++i) {
-        take(records + i * header_.layout.length, block);
+      for (std::size_t done = 0; done < count;) {
+        const std::size_t some = std::min(count - done, PointBlock::kCapacity - block.count);
+        take(records + done * header_.layout.length, some, block);
+        done += some;
         if (block.count < PointBlock::kCapacity) continue;
         sink(block);
         block.count = 0;
@@ -45,25 +53,51 @@ class LasSource : public PointSource {
   }
 
  private:
-  void take(const std::byte* record, PointBlock& block) const {
-    if (header_.layout.withheld(record)) {
-      ++block.withheld;
+  /// Adds `count` records for which there is room.
+  void take(const std::byte* records, std::size_t count, PointBlock& block) const {
+    const std::size_t length = header_.layout.length;
+    std::size_t withheld = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      withheld += header_.layout.withheld(records + i * length) ? 1 : 0;
+    }
+    if (withheld == 0) {
+      load(records, count, block);
       return;
     }
-    const std::size_t i = block.count++;
-    const Eigen::Vector3d point = header_.pointOf(record);
+    block.withheld += withheld;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::byte* const record = records + i * length;
+      if (!header_.layout.withheld(record)) load(record, 1, block);
+    }
+  }
+
+  /// Channel after channel: so the compiler keeps what is the same for all in registers.
+  void load(const std::byte* records, std::size_t count, PointBlock& block) const {
+    const std::size_t length = header_.layout.length;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      block.xyz[axis][i] = point[static_cast<Eigen::Index>(axis)];
+      const double scale = header_.scale[static_cast<Eigen::Index>(axis)];
+      const double offset = header_.offset[static_cast<Eigen::Index>(axis)];
+      const std::byte* from = records + axis * sizeof(std::int32_t);
+      double* const to = &block.xyz[axis][block.count];
+      for (std::size_t i = 0; i < count; ++i, from += length) {
+        to[i] = scale * loadLe<std::int32_t>(from) + offset;
+      }
     }
-    if (!colours_) return;
-    for (std::size_t c = 0; c < 3; ++c) {
-      block.wide[c][i] = loadLe<std::uint16_t>(record + *header_.layout.rgb + 2 * c);
+    for (std::size_t c = 0; colours_ && c < block.wide.size(); ++c) {
+      const std::byte* from = records + *header_.layout.rgb + c * sizeof(std::uint16_t);
+      float* const to = &block.wide[c][block.count];
+      for (std::size_t i = 0; i < count; ++i, from += length) to[i] = loadLe<std::uint16_t>(from);
     }
+    for (std::size_t i = 0; marks_ && i < count; ++i) {
+      block.marks[block.count + i] = marksOf(records + i * length, header_.layout);
+    }
+    block.count += count;
   }
 
   LasHeader header_;
   std::unique_ptr<LasPoints> points_;
   bool colours_;
+  bool marks_;
 };
 
 /// The names that the record "extra bytes" gives to what it describes.
@@ -119,8 +153,7 @@ PointFile openLas(const MappedFile& file, const std::string& name, const ReadOpt
   }
   opened.warnings = header.warnings;
   opened.black_is_none = true;
-  opened.source =
-      std::make_unique<LasSource>(std::move(header), std::move(points), options.colours);
+  opened.source = std::make_unique<LasSource>(std::move(header), std::move(points), options);
   return opened;
 }
 

@@ -98,8 +98,9 @@ class Table {
     const Bytes data = record->data;
     if (data.size() < kRecordHead) fail("damaged: its record '{}' is too short", kLazUser);
     compressor_ = loadLe<std::uint16_t>(data.data());
-    const bool known = compressor_ == kLayeredChunked
-                           ? header_.layout.extended
+    // LASzip reads points of the extended formats by layers only, and crashes where it cannot.
+    const bool known = header_.layout.extended
+                           ? compressor_ == kLayeredChunked
                            : compressor_ == kPointwise || compressor_ == kPointwiseChunked;
     if (!known || loadLe<std::uint16_t>(data.data() + 2) != 0) {
       fail("is compressed in a way that is not known for points of format {} (compressor {})",

@@ -11,6 +11,7 @@
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/io/raster/geo_reader.hpp"
 #include "agricolmap/io/raster/geo_writer.hpp"
+#include "agricolmap/io/raster/mosaic_writer.hpp"
 #include "agricolmap/io/raster/raster_file.hpp"
 #include "agricolmap/io/raster/raster_test_support.hpp"
 #include "agricolmap/io/test_support.hpp"
@@ -250,6 +251,73 @@ TEST(GeoLayers, NoFullDiskGoesUnnoticed) {
         << limit << " of " << whole;
   }
   EXPECT_EXIT(writeUnderLimit(dir.path(), layer, 2 * whole), testing::ExitedWithCode(0), "");
+}
+
+// A field of 4 × 6 cells, and on it a piece of fine cells, one of which is empty.
+TEST(Mosaic, LaysFinePiecesOnTheWhole) {
+  const TempDir dir;
+  Raster<float> coarse(4, 6, 1.0F);
+  coarse(0, 0) = kNone;
+  GeoLayer whole = layerOn(4, 6);
+  whole.bands = {{&coarse, "height", "m"}};
+  whole.nodata = kNone;
+  writeLayer(dir / "whole.tif", whole);
+  Raster<float> other(4, 2, 7.0F), fine(4, 2, 2.0F);
+  fine(3, 1) = kNone;
+  GeoLayer piece = whole;
+  piece.frame = {whole.frame.corner + Eigen::Vector2d(2 * 0.05, 1 * 0.05), 0.025, 4, 2};
+  piece.bands = {{&other, "other", ""}, {&fine, "height", "m"}};
+  writeLayer(dir / "piece.tif", piece);
+  Mosaic mosaic;
+  mosaic.frame = {whole.frame.corner, 0.025, 8, 12};
+  mosaic.origin = whole.origin;
+  mosaic.crs = whole.crs;
+  mosaic.name = "height";
+  mosaic.unit = "m";
+  mosaic.pieces = {{.file = "whole.tif", .rows = 8, .cols = 12, .cells = 2},
+                   {.file = "piece.tif", .band = 2, .row = 2, .col = 4, .rows = 4, .cols = 2}};
+  writeMosaic(dir / "height.vrt", mosaic);
+  const Layer<float> read = readLayer<float>(dir / "height.vrt");
+  EXPECT_NEAR((read.shape.frame.corner - mosaic.frame.corner).norm(), 0.0, 1e-8);
+  EXPECT_NEAR(read.shape.frame.cell, 0.025, 1e-12);
+  EXPECT_NE(read.shape.crs.find("UTM zone 32N"), std::string::npos);
+  for (int r = 0; r < 8; ++r) {
+    for (int c = 0; c < 12; ++c) {
+      const bool on_piece = r >= 2 && r < 6 && c >= 4 && c < 6 && !(r == 5 && c == 5);
+      if (r < 2 && c < 2) {
+        EXPECT_TRUE(std::isnan(read.bands[0](r, c)));
+      } else {
+        EXPECT_EQ(read.bands[0](r, c), on_piece ? 2.0F : 1.0F) << r << ' ' << c;
+      }
+    }
+  }
+}
+
+TEST(Mosaic, OfColoursShowsWhatTheirMasksShow) {
+  const TempDir dir;
+  const Raster<Rgb> green(2, 2, Rgb{10, 200, 30}), red(2, 2, Rgb{200, 10, 20});
+  Raster<std::uint8_t> all(2, 2, 255), half(2, 2, 255);
+  all(1, 1) = 0;
+  half(0, 0) = half(1, 1) = 0;
+  GeoLayer layer = layerOn(2, 2);
+  layer.bands = {{&green, "", ""}};
+  layer.mask = &all;
+  writeLayer(dir / "green.tif", layer);
+  layer.bands = {{&red, "", ""}};
+  layer.mask = &half;
+  writeLayer(dir / "red.tif", layer);
+  Mosaic mosaic;
+  mosaic.frame = layer.frame;
+  mosaic.colour = true;
+  mosaic.pieces = {{.file = "green.tif", .rows = 2, .cols = 2},
+                   {.file = "red.tif", .rows = 2, .cols = 2}};
+  writeMosaic(dir / "colour.vrt", mosaic);
+  const Layer<Rgb> read = readLayer<Rgb>(dir / "colour.vrt");
+  EXPECT_EQ(read.bands[0](0, 0), (Rgb{10, 200, 30}));
+  EXPECT_EQ(read.bands[0](0, 1), (Rgb{200, 10, 20}));
+  EXPECT_EQ(read.bands[0](1, 0), (Rgb{200, 10, 20}));
+  EXPECT_EQ(read.valid(0, 0), 1);
+  EXPECT_EQ(read.valid(1, 1), 0);
 }
 
 }  // namespace

@@ -243,6 +243,39 @@ std::string refusal(const std::filesystem::path& file) {
   return error == 0 ? "" : std::generic_category().message(error);
 }
 
+/// Whether all tiles of a band, at all of its scales, lie within so many bytes of its file.
+bool tilesEndWithin(GDALRasterBand& band, std::uintmax_t bytes) {
+  int width = 0, height = 0;
+  band.GetBlockSize(&width, &height);
+  const auto number = [&](const char* what, int x, int y) -> std::uintmax_t {
+    const char* text = band.GetMetadataItem(fmt::format("{}_{}_{}", what, x, y).c_str(), "TIFF");
+    return text == nullptr ? 0 : std::stoull(text);  // without: a tile of nothing
+  };
+  for (int y = 0; y * height < band.GetYSize(); ++y) {
+    for (int x = 0; x * width < band.GetXSize(); ++x) {
+      if (number("BLOCK_OFFSET", x, y) + number("BLOCK_SIZE", x, y) > bytes) return false;
+    }
+  }
+  for (int i = 0; i < band.GetOverviewCount(); ++i) {
+    if (!tilesEndWithin(*band.GetOverview(i), bytes)) return false;
+  }
+  return true;
+}
+
+/// What GDAL 3.10 holds back until it closes a file is lost without an error when the disk is full.
+bool isWhole(const std::filesystem::path& file) {
+  const GDALDatasetUniquePtr read(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (!read || error) return false;
+  for (GDALRasterBand* band : read->GetBands()) {
+    if (!tilesEndWithin(*band, bytes)) return false;
+    const bool masked = (band->GetMaskFlags() & GMF_PER_DATASET) != 0;
+    if (masked && !tilesEndWithin(*band->GetMaskBand(), bytes)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void writeLayer(const OutputPath& path, const GeoLayer& layer) {
@@ -254,7 +287,7 @@ void writeLayer(const OutputPath& path, const GeoLayer& layer) {
   const bool made = written != nullptr;
   // Some of a file is written, and of a full disk is heard, on closing only.
   written.reset();
-  if (made && !failure.happened()) return;
+  if (made && !failure.happened() && isWhole(path.file())) return;
   std::string reason = failure.reason();
   const std::string refused = refusal(path.file());
   if (reason.find(refused) == std::string::npos) reason += fmt::format(" ({})", refused);

@@ -4,6 +4,7 @@
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/raster/geo_reader.hpp"
 #include "agricolmap/io/raster/geo_writer.hpp"
+#include "agricolmap/io/raster/mosaic_writer.hpp"
 #include "agricolmap/io/raster/raster_file.hpp"
 #include "agricolmap/io/raster/raster_place.hpp"
 
@@ -58,5 +59,7 @@ template Layer<std::int32_t> readLayer(const std::filesystem::path&,
 template Layer<Rgb> readLayer(const std::filesystem::path&, const std::optional<CellWindow>&);
 
 void writeLayer(const OutputPath& path, const GeoLayer& /*layer*/) { refuse(path.shown()); }
+
+void writeMosaic(const OutputPath& path, const Mosaic& /*mosaic*/) { refuse(path.shown()); }
 
 }  // namespace agricolmap::io

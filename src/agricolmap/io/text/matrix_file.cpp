@@ -141,17 +141,17 @@ Eigen::Affine3d readTransform(const std::filesystem::path& path) {
 void writeMatrix(const OutputPath& path, const Eigen::Affine3d& target_from_source,
                  const std::string& comment) {
   std::string text;
-  for (std::size_t begin = 0; begin < comment.size();) {
-    const std::size_t end = std::min(comment.find('\n', begin), comment.size());
-    text += fmt::format("# {}\n", comment.substr(begin, end - begin));
-    begin = end + 1;
-  }
   for (Eigen::Index row = 0; row < 4; ++row) {
     for (Eigen::Index col = 0; col < 4; ++col) {
       if (col > 0) text += ' ';
       text += exactText(target_from_source.matrix()(row, col));
     }
     text += "\n";
+  }
+  for (std::size_t begin = 0; begin < comment.size();) {
+    const std::size_t end = std::min(comment.find('\n', begin), comment.size());
+    text += fmt::format("# {}\n", comment.substr(begin, end - begin));
+    begin = end + 1;
   }
   writeText(path, text);
 }

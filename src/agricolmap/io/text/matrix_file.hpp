@@ -19,8 +19,8 @@ Eigen::Affine3d readMatrix(const std::filesystem::path& path);
 /// else: 16 numbers whose last four are 0 0 0 1.
 bool looksLikeMatrix(std::string_view text);
 
-/// Writes 17 significant digits: what is read back is the same to the bit. `comment` goes first,
-/// each of its lines behind a `#`.
+/// Writes 17 significant digits: what is read back is the same to the bit. `comment` goes
+/// last, each of its lines behind a `#`: CloudCompare takes a file that begins with one for zeros.
 void writeMatrix(const OutputPath& path, const Eigen::Affine3d& target_from_source,
                  const std::string& comment = "");
 

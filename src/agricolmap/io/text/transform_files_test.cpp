@@ -81,6 +81,13 @@ TEST(MatrixFile, RoundTripsToTheBit) {
   EXPECT_EQ(readTransform(dir / "m.txt").matrix(), m.matrix());
 }
 
+TEST(MatrixFile, BeginsWithItsNumbersAsOtherProgramsWantIt) {
+  const TempDir dir;
+  writeMatrix(dir / "m.txt", Eigen::Affine3d::Identity(), "fixed_from_moving\nmetres");
+  EXPECT_EQ(test::contentOf(dir / "m.txt"),
+            "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n# fixed_from_moving\n# metres\n");
+}
+
 TEST(MatrixFile, ToleratesBracketsAndChecksTheNumbers) {
   const TempDir dir;
   const auto read = [&](const std::string& text) { return readMatrix(dir.write("m.txt", text)); };

@@ -4,8 +4,10 @@
 #include <ogr_geometry.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
 
 #include "agricolmap/core/error.hpp"
 #include "agricolmap/io/vector/ogr_support.hpp"
@@ -98,7 +100,6 @@ void fitColumn(const VectorField& field, OGRFieldDefn& definition) {
 
 void writeLayer(GDALDataset& file, const VectorLayer& layer, OGRSpatialReference* srs,
                 const OutputPath& path, bool fit_columns = false) {
-  // Without a coordinate system of the earth, GeoPackage's own word for an unknown plane.
   OGRLayer* written = file.CreateLayer(layer.name.c_str(), srs, typeOf(layer.kind), nullptr);
   if (written == nullptr) failWrite(path, "the layer " + layer.name + " cannot be made");
   for (const VectorField& field : layer.fields) {
@@ -117,6 +118,41 @@ void writeLayer(GDALDataset& file, const VectorLayer& layer, OGRSpatialReference
   }
 }
 
+/// The table in which QGIS keeps styles: it takes a layer's default from there when it opens it.
+void writeStyles(GDALDataset& file, const std::vector<VectorLayer>& layers,
+                 const OutputPath& path) {
+  if (std::ranges::all_of(layers, &std::string::empty, &VectorLayer::qgis_style)) return;
+  const char* const options[] = {"FID=id", nullptr};
+  OGRLayer* table = file.CreateLayer("layer_styles", nullptr, wkbNone, const_cast<char**>(options));
+  if (table == nullptr) failWrite(path, "the layer layer_styles cannot be made");
+  for (const char* name :
+       {"f_table_catalog", "f_table_schema", "f_table_name", "f_geometry_column", "styleName",
+        "styleQML", "styleSLD", "useAsDefault", "description", "owner", "ui", "update_time"}) {
+    const std::string_view word(name);
+    OGRFieldDefn field(name, word == "update_time" ? OFTDateTime : OFTString);
+    if (word == "useAsDefault") {
+      field.SetType(OFTInteger);
+      field.SetSubType(OFSTBoolean);
+    }
+    if (table->CreateField(&field) != OGRERR_NONE) failWrite(path, "layer_styles cannot be made");
+  }
+  for (const VectorLayer& layer : layers) {
+    if (layer.qgis_style.empty()) continue;
+    OGRLayer& styled = *file.GetLayerByName(layer.name.c_str());
+    OGRFeature row(table->GetLayerDefn());
+    // QGIS looks for a schema that is empty, not for one that is missing.
+    for (const char* name : {"f_table_catalog", "f_table_schema", "description", "owner", "ui"}) {
+      row.SetField(name, "");
+    }
+    row.SetField("f_table_name", layer.name.c_str());
+    row.SetField("f_geometry_column", styled.GetGeometryColumn());
+    row.SetField("styleName", layer.name.c_str());
+    row.SetField("styleQML", layer.qgis_style.c_str());
+    row.SetField("useAsDefault", 1);
+    if (table->CreateFeature(&row) != OGRERR_NONE) failWrite(path, "a style cannot be written");
+  }
+}
+
 }  // namespace
 
 void writeGeoPackage(const OutputPath& path, const std::vector<VectorLayer>& layers,
@@ -128,15 +164,16 @@ void writeGeoPackage(const OutputPath& path, const std::vector<VectorLayer>& lay
     throw OutputError(
         fmt::format("{}: this GDAL writes no GeoPackage; install it with SQLite", path.shown()));
   }
-  std::optional<OGRSpatialReference> srs = horizontalSrs(crs);
+  OGRSpatialReference srs = horizontalSrs(crs).value_or(unknownPlane());
   CPLErrorReset();
   GDALDatasetUniquePtr file(driver->Create(path.file().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
   if (!file) failWrite(path, "cannot be made");
   for (const VectorLayer& layer : layers) {
     const bool whole = file->StartTransaction() == OGRERR_NONE;
-    writeLayer(*file, layer, srs ? &*srs : nullptr, path);
+    writeLayer(*file, layer, &srs, path);
     if (whole && file->CommitTransaction() != OGRERR_NONE) failWrite(path, "cannot be written");
   }
+  writeStyles(*file, layers, path);
   CPLErrorReset();
   file.reset();
   if (CPLGetLastErrorType() == CE_Failure) failWrite(path, "cannot be written");

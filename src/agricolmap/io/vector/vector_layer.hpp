@@ -40,10 +40,11 @@ struct VectorLayer {
   GeometryKind kind = GeometryKind::kPoint;
   std::vector<VectorField> fields;
   std::vector<VectorFeature> features;
+  std::string qgis_style = {};  ///< how QGIS is to draw it, as QML; GeoPackages keep it
 };
 
-/// All layers in one file. `crs` may be empty. Throws OutputError with GDAL's reason, UsageError
-/// where this build has no GDAL.
+/// All layers in one file, with the table `layer_styles` where QGIS looks for their styles. `crs`
+/// may be empty. Throws OutputError with GDAL's reason, UsageError where this build has no GDAL.
 void writeGeoPackage(const OutputPath& path, const std::vector<VectorLayer>& layers,
                      const Crs& crs);
 

@@ -91,7 +91,7 @@ ValuedPolygons readValues(const std::filesystem::path& path, const std::string& 
                                  layer, field, numberFields(*from)));
   }
   ValuedPolygons result;
-  if (const OGRSpatialReference* srs = from->GetSpatialRef(); srs != nullptr) {
+  if (const OGRSpatialReference* srs = srsOf(*from); srs != nullptr) {
     result.crs = crsFrom(*srs);
   }
   for (const OGRFeatureUniquePtr& feature : *from) {
@@ -116,7 +116,7 @@ std::vector<NamedPolygon> readPolygons(const std::filesystem::path& path, const 
   for (int k = 0; k < file->GetLayerCount() && found.empty(); ++k) {
     OGRLayer& layer = *file->GetLayer(k);
     std::unique_ptr<OGRCoordinateTransformation> transform;
-    if (const OGRSpatialReference* from = layer.GetSpatialRef(); from != nullptr && to) {
+    if (const OGRSpatialReference* from = srsOf(layer); from != nullptr && to) {
       OGRSpatialReference source = *from;
       source.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
       transform.reset(OGRCreateCoordinateTransformation(&source, &*to));

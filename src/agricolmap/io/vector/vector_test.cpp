@@ -131,6 +131,55 @@ TEST(VectorFile, OfSquaresGivesAFieldsValues) {
   EXPECT_THROW(readValues(dir / "none.gpkg", "grid", "weeds"), InputError);
 }
 
+TEST(VectorFile, WithoutASystemIsAPlaneThatNobodyKnows) {
+  const TempDir dir;
+  VectorLayer layer{"grid", GeometryKind::kPolygon, {{"weeds", FieldKind::kReal}}, {}};
+  layer.features.push_back({{{5e5, 5e6}, {500002, 5e6}, {500002, 5000002}}, {0.25}});
+  writeGeoPackage(dir / "ours.gpkg", {layer}, {});
+  const GDALDatasetUniquePtr ours(
+      GDALDataset::Open((dir / "ours.gpkg").c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
+  const OGRSpatialReference* srs = ours->GetLayer(0)->GetSpatialRef();
+  ASSERT_NE(srs, nullptr);
+  EXPECT_STREQ(srs->GetName(), "Undefined Cartesian SRS");
+  // As others write it, of GDAL 3.6 degrees without a name.
+  OGRLayer* theirs = ours->CreateLayer("theirs", nullptr, wkbPolygon, nullptr);
+  OGRFieldDefn field("weeds", OFTReal);
+  theirs->CreateField(&field);
+  const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(theirs->GetLayerDefn()));
+  feature->SetGeometry(OGRFeatureUniquePtr(ours->GetLayer(0)->GetNextFeature())->GetGeometryRef());
+  ASSERT_EQ(theirs->CreateFeature(feature.get()), OGRERR_NONE);
+  ours->FlushCache();
+  for (const char* name : {"grid", "theirs"}) {
+    EXPECT_EQ(readValues(dir / "ours.gpkg", name, "weeds").crs.wkt, "") << name;
+  }
+  const auto read = readPolygons(dir / "ours.gpkg", *crsFromWkt("EPSG:32632"));
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].corners[1], Eigen::Vector2d(500002, 5e6));
+}
+
+TEST(VectorFile, StylesLieWhereQgisLooksForThem) {
+  const TempDir dir;
+  VectorLayer styled{"plants", GeometryKind::kPoint, {}, {{{{1.0, 2.0}}, {}}}, "<qgis>'a'</qgis>"};
+  const VectorLayer plain{"weeds", GeometryKind::kPoint, {}, {{{{3.0, 4.0}}, {}}}};
+  writeGeoPackage(dir / "plain.gpkg", {plain}, {});
+  writeGeoPackage(dir / "styled.gpkg", {plain, styled}, {});
+  const auto open = [&](const char* name) {
+    return GDALDatasetUniquePtr(GDALDataset::Open((dir / name).c_str(), GDAL_OF_VECTOR));
+  };
+  EXPECT_EQ(open("plain.gpkg")->GetLayerByName("layer_styles"), nullptr);
+  const GDALDatasetUniquePtr file = open("styled.gpkg");
+  OGRLayer* table = file->GetLayerByName("layer_styles");
+  ASSERT_NE(table, nullptr);
+  ASSERT_EQ(table->GetFeatureCount(), 1);
+  // As QGIS asks for it.
+  table->SetAttributeFilter(
+      "f_table_schema = '' AND f_table_name = 'plants' AND f_geometry_column = 'geom'");
+  const OGRFeatureUniquePtr row(table->GetNextFeature());
+  ASSERT_TRUE(row);
+  EXPECT_STREQ(row->GetFieldAsString("styleQML"), "<qgis>'a'</qgis>");
+  EXPECT_EQ(row->GetFieldAsInteger("useAsDefault"), 1);
+}
+
 TEST(Geographic, ThereAndBackIsTheSamePlace) {
   const Crs utm = *crsFromWkt("EPSG:32632");
   const std::vector<Eigen::Vector2d> points = {{500000.0, 5300000.0}, {612345.6, 5432100.1}};
