@@ -13,7 +13,7 @@ Transform transformOf(const CloudFacts& fixed, const PairMaps& maps, const Frame
   transform.parts = splitHorizontal(axes.transpose() * placed.pose.linear() * axes);
   transform.parts.scale_x *= scale;
   transform.parts.scale_y *= scale;
-  transform.vertical_scale = scale;
+  transform.vertical_scale = scale * placed.heights.scale;
   const Eigen::Rotation2Dd back(-maps.frames.turn);
   transform.tilt = (back * placed.heights.slope).array().atan().matrix();
   const Eigen::Vector3d middle(maps.space.centre.x(), maps.space.centre.y(), 0.0);

@@ -26,6 +26,27 @@ bool fitsBetter(const Placed& next, const Placed& before) {
          next.correlation > before.correlation;
 }
 
+/// Share of the moving map's cells that the guess, which it was gridded under, lays on those of the
+/// fixed map.
+double guessedOverlap(const PairMaps& maps) {
+  std::size_t seen = 0;
+  std::size_t shared = 0;
+  const GridFrame& frame = maps.moving.frame;
+  const map::GridMap& fixed = maps.fixed;
+  for (int row = 0; row < frame.rows; ++row) {
+    for (int col = 0; col < frame.cols; ++col) {
+      if (!maps.moving.valid(row, col)) continue;
+      ++seen;
+      const Eigen::Vector2d at = fixed.frame.cellOf(frame.centre(row, col)).array().round();
+      const bool inside =
+          at.x() >= 0.0 && at.x() < fixed.frame.cols && at.y() >= 0.0 && at.y() < fixed.frame.rows;
+      if (!inside) continue;
+      shared += fixed.valid(static_cast<int>(at.y()), static_cast<int>(at.x())) ? 1 : 0;
+    }
+  }
+  return seen == 0 ? 0.0 : static_cast<double>(shared) / static_cast<double>(seen);
+}
+
 Measured measureBent(const refine::PairSignals& signals, const SearchSpace& space,
                      const Refined& refined, const RegistrationOptions& options, Monitor& monitor) {
   const auto at = [&](const refine::RefinedPose& found) {
@@ -104,7 +125,8 @@ Measured measureStraightened(const refine::PairSignals& signals, const SearchSpa
 }
 
 verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::RefinedPose>& rivals,
-                             const SearchSpace& space, const RegistrationOptions& options) {
+                             const PairMaps& maps, const RegistrationOptions& options) {
+  const SearchSpace& space = maps.space;
   if (placed.heights.status != refine::VerticalStatus::kOk) {
     return verdict::rejectBecause("the heights of the two maps do not fit one another");
   }
@@ -114,11 +136,19 @@ verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::Ref
       .heights = placed.heights_verdict,
       .overlap = placed.overlap,
       .pose = placed.followed ? placed.pose * placed.followed->longest : placed.pose,
-      .rivals = {}};
+      .guessed_overlap = space.uncertainty.anywhere() ? 1.0 : guessedOverlap(maps),
+      .rivals = {},
+      .slip_rms = placed.followed ? deform::slipRms(placed.followed->bend.deformation) : 0.0};
   for (const refine::RefinedPose& rival : rivals) finding.rivals.push_back(rival.significance);
   verdict::Verdict verdict = verdict::judge(finding, space, options.verdict);
   verdict.remedies = verdict::remediesFor(verdict, finding, space, options.verdict);
   if (placed.followed) verdict.reasons.push_back(describe(placed.followed->bend));
+  if (placed.heights.scale != 1.0) {
+    verdict.reasons.push_back(fmt::format(
+        "the ground rises and falls {:.2f} times as much in the fixed map, which the transform's "
+        "vertical scale follows",
+        placed.heights.scale));
+  }
   // Looked at in long strips alone: what the sides of a short one differ by may be its plants.
   const bool is_long = 2.0 * placed.evidence.strip.half_extent.x() > options.search.max_length;
   if (const auto apart = verdict::sidesApart(placed.evidence); apart && is_long) {

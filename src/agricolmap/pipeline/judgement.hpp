@@ -6,6 +6,7 @@
 
 #include "agricolmap/core/monitor.hpp"
 #include "agricolmap/deform/deform.hpp"
+#include "agricolmap/pipeline/maps.hpp"
 #include "agricolmap/pipeline/refinement.hpp"
 #include "agricolmap/refine/vertical.hpp"
 #include "agricolmap/verdict/verdict.hpp"
@@ -53,6 +54,6 @@ Measured measureStraightened(const refine::PairSignals& signals, const SearchSpa
 
 /// `rivals`: other places that held when refined.
 verdict::Verdict judgePlaced(const Placed& placed, const std::vector<refine::RefinedPose>& rivals,
-                             const SearchSpace& space, const RegistrationOptions& options);
+                             const PairMaps& maps, const RegistrationOptions& options);
 
 }  // namespace agricolmap::pipeline

@@ -82,6 +82,9 @@ std::vector<double> smoothed(const std::vector<double>& values) {
 void liftPieces(const refine::PairSignals& signals, const deform::Path& path,
                 const RegistrationOptions& options, std::vector<pieces::PiecePose>& chain) {
   std::vector<refine::VerticalResult> heights(chain.size());
+  // Pieces in scales of their own could not be compared.
+  refine::VerticalOptions vertical = options.vertical;
+  vertical.scale = refine::VerticalScaleKind::kAssumed;
   parallelFor(chain.size(), [&](std::size_t i) {
     const pieces::PiecePose& piece = chain[i];
     if (!piece.held) return;
@@ -95,7 +98,7 @@ void liftPieces(const refine::PairSignals& signals, const deform::Path& path,
       under.extend(piece.pose * corner);
     }
     heights[i] = refine::fitVertical(map::croppedMap(signals.fixed().grid(), under), moving,
-                                     piece.pose, options.vertical);
+                                     piece.pose, vertical);
   });
   std::vector<std::size_t> known;
   std::vector<double> lifts;

@@ -224,6 +224,7 @@ RegistrationOptions preset(const std::string& name) {
     options.grid.coarsen = false;
     options.signal.term = map::SignalTerm::kExgHeight;
     options.hidden.fill = false;
+    options.vertical.scale = refine::VerticalScaleKind::kAssumed;
     if (name == "paper-literal") makeLiteral(options);
     return options;
   }

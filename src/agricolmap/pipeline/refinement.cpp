@@ -66,8 +66,10 @@ Refined refineByPoints(const refine::PairSignals& signals, const Eigen::Affine2d
     }
   }
   // Heights start where the maps agree on the ground; the heights' own stage has the last word.
+  refine::VerticalOptions heights = options.vertical;
+  heights.scale = refine::VerticalScaleKind::kAssumed;  // the paper's pose has none
   const refine::VerticalResult vertical =
-      refine::fitVertical(signals.fixed().grid(), strip, start, options.vertical);
+      refine::fitVertical(signals.fixed().grid(), strip, start, heights);
   paper::CpdPose pose;
   pose.plane = start;
   pose.height_offset = vertical.status == refine::VerticalStatus::kOk ? vertical.offset : 0.0;

@@ -45,7 +45,7 @@ Outcome settle(const PairMaps& maps, const refine::PairSignals& signals, Located
   outcome.trace.straightened = measured.straightened;
   followBends(signals, maps.space, maps.path, refined, options, monitor, measured.placed);
   outcome.rivals = std::move(refined.rivals);
-  outcome.verdict = judgePlaced(measured.placed, outcome.rivals, maps.space, options);
+  outcome.verdict = judgePlaced(measured.placed, outcome.rivals, maps, options);
   outcome.placed = std::move(measured.placed);
   return outcome;
 }

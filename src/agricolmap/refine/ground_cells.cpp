@@ -87,8 +87,8 @@ std::vector<GroundCell> groundCells(const map::GridMap& fixed, const map::GridMa
       const double here_canopy = here - under_moving.at(r, c);
       const double there_canopy = there - under_fixed.at(fr, fc);
       if (!std::isfinite(here_canopy) || !std::isfinite(there_canopy)) continue;
-      cells.push_back({place, there - here, std::max(0.0, here_canopy), std::max(0.0, there_canopy),
-                       there - there_canopy, moving.exg(r, c), r, c});
+      cells.push_back({place, here, there - here, std::max(0.0, here_canopy),
+                       std::max(0.0, there_canopy), there - there_canopy, moving.exg(r, c), r, c});
     }
   }
   return cells;

@@ -34,6 +34,7 @@ class GroundModel {
 /// A cell that both maps see.
 struct GroundCell {
   Eigen::Vector2d place;  ///< fixed frame [m], later relative to the middle
+  double moving_height;   ///< [m]
   double difference;      ///< fixed − moving height [m]
   double moving_canopy;   ///< height above the moving map's ground nearby, at least 0 [m]
   double fixed_canopy;    ///< and above the fixed map's [m]
@@ -41,6 +42,9 @@ struct GroundCell {
   float greenness;        ///< Excess Green of the moving map
   int row, col;           ///< in the moving map
 };
+
+/// Weight from which on a cell counts as ground, not as more or less of it.
+inline constexpr double kSurelyGround = 0.6;
 
 /// The cell of the fixed map that lies at a place of its frame; nothing where it is empty.
 bool fixedCellAt(const map::GridMap& fixed, const Eigen::Vector2d& place, int& row, int& col);

@@ -13,6 +13,10 @@
 namespace agricolmap::refine {
 
 void listOptions(OptionTable& table, VerticalOptions& options) {
+  table
+      .choice("scale", options.scale, {"assumed", "measured"},
+              "vertical scale: 1, or what the ground's relief tells for sure")
+      .basic();
   table.number("ground_window", options.ground_window, 0.05, 100.0, "m",
                "side of the window whose lowest cells stand for the ground");
   table.number("ground_tolerance", options.ground_tolerance, 0.001, 10.0, "m",
@@ -51,8 +55,6 @@ constexpr float kContrast = 0.08F;
 constexpr double kSoilEnd = 0.02;
 constexpr double kPlantEnd = 0.98;
 
-/// Weight from which on a cell counts as ground where deviations are told.
-constexpr double kSurelyGround = 0.6;
 /// Weight of any cell where the tilt is told, beside 1 for ground.
 constexpr double kSurfaceWeight = 0.01;
 constexpr double kSurfaceRobust = 4.0;
@@ -68,6 +70,8 @@ constexpr double kLike = 0.4;
 /// alone, and what is lowest among them is no ground whatever its colour.
 constexpr double kTopsOnly = 2.4;
 constexpr double kAnyDepth = 2.0;
+/// Share of the lowest cells that must be ground for their relief to tell the vertical scale.
+constexpr double kTellsScale = 0.5;
 /// Residuals beyond this many deviations do not tell whether the lift is followed.
 constexpr double kFollowed = 4.0;
 
@@ -232,9 +236,12 @@ double VerticalResult::bias() const {
   return std::hypot(kLiftDoubt * lift, unseen * unseen * canopy);
 }
 
-VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving,
-                           const Eigen::Affine2d& fixed_from_moving,
-                           const VerticalOptions& options) {
+namespace {
+
+/// With all heights at face value.
+VerticalResult fitAtFaceValue(const map::GridMap& fixed, const map::GridMap& moving,
+                              const Eigen::Affine2d& fixed_from_moving,
+                              const VerticalOptions& options) {
   VerticalResult result;
   const GroundModel under_moving(moving, {0, moving.frame.rows, 0, moving.frame.cols},
                                  options.ground_window);
@@ -275,8 +282,10 @@ VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving
     const double share = followed(cells, differences, canopy.lift, ground, raw) *
                          between(canopy.correlation, kUnlike, kLike);
     std::vector<double> of_ground = differences, of_surface = differences;
+    std::vector<double> lift(cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      of_ground[i] -= share * canopy.lift[i];
+      lift[i] = share * canopy.lift[i];
+      of_ground[i] -= lift[i];
       of_surface[i] -= canopy.lift[i];
     }
     const Tilted fit = fitTilt(cells, ground, of_ground, of_surface, options.robust);
@@ -284,9 +293,32 @@ VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving
     result.slope = fit.plane.tail<2>();
     result.residual = fit.deviation;
     result.lift = raw.plane[0] - fit.plane[0];
+    // Leaves taken for ground would tell how they grew.
+    if (options.scale == VerticalScaleKind::kMeasured && result.ground_seen >= kTellsScale) {
+      result.measured_scale = measureVerticalScale(cells, ground, lift, options.ground_window);
+    }
   }
   result.status =
       result.slope.norm() > options.max_slope ? VerticalStatus::kTooSteep : VerticalStatus::kOk;
+  return result;
+}
+
+}  // namespace
+
+VerticalResult fitVertical(const map::GridMap& fixed, const map::GridMap& moving,
+                           const Eigen::Affine2d& fixed_from_moving,
+                           const VerticalOptions& options) {
+  VerticalResult result = fitAtFaceValue(fixed, moving, fixed_from_moving, options);
+  if (!result.measured_scale.clear()) return result;
+  const VerticalScale scale = result.measured_scale;
+  map::GridMap stretched = moving;
+  for (float& height : stretched.height) height *= static_cast<float>(scale.value);
+  stretched.ground_deviation *= scale.value;
+  VerticalOptions known = options;
+  known.scale = VerticalScaleKind::kAssumed;
+  result = fitAtFaceValue(fixed, stretched, fixed_from_moving, known);
+  result.scale = scale.value;
+  result.measured_scale = scale;
   return result;
 }
 
@@ -294,6 +326,7 @@ Eigen::Affine3d liftPose(const Eigen::Affine2d& pose, const VerticalResult& vert
   Eigen::Affine3d lifted = Eigen::Affine3d::Identity();
   lifted.linear().topLeftCorner<2, 2>() = pose.linear();
   lifted.translation().head<2>() = pose.translation();
+  lifted.linear()(2, 2) = vertical.scale;
   lifted.linear().row(2).head<2>() = vertical.slope.transpose() * pose.linear();
   lifted.translation().z() =
       vertical.offset + vertical.slope.dot(pose.translation() - vertical.about);

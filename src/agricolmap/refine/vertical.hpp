@@ -8,10 +8,15 @@
 
 #include "agricolmap/core/options.hpp"
 #include "agricolmap/map/grid_map.hpp"
+#include "agricolmap/refine/vertical_scale.hpp"
 
 namespace agricolmap::refine {
 
+enum class VerticalScaleKind { kAssumed, kMeasured };
+
 struct VerticalOptions {
+  /// Whether a vertical scale that the ground tells for sure is followed.
+  VerticalScaleKind scale = VerticalScaleKind::kMeasured;
   double ground_window = 0.6;       ///< side of the window whose lowest cells are ground [m]
   double ground_tolerance = 0.015;  ///< height above the ground at which a cell stops to be it [m]
   double max_slope = 0.2;           ///< larger tilts between the levelled maps are refused
@@ -21,9 +26,12 @@ void listOptions(OptionTable& table, VerticalOptions& options);
 
 enum class VerticalStatus { kOk, kTooFewCells, kTooSteep };
 
-/// fixed height = moving height + offset + slope · (p − about), p in the fixed levelled frame.
+/// fixed height = scale · moving height + offset + slope · (p − about), p in the fixed levelled
+/// frame.
 struct VerticalResult {
   VerticalStatus status = VerticalStatus::kTooFewCells;
+  double scale = 1.0;  ///< 1 unless `measured_scale` is another one for sure
+  VerticalScale measured_scale;
   double offset = 0.0;                              ///< at `about` [m]
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< [m/m]
   Eigen::Vector2d about = Eigen::Vector2d::Zero();  ///< middle of the overlap [m]

@@ -258,5 +258,34 @@ TEST(Vertical, FlatMapsHaveNoRelief) {
       fitVertical(flat, view(0.3, 0.4, 1.0, false, 2), Eigen::Affine2d::Identity(), {}).relief);
 }
 
+// Hills that are a fifth too low in the moving map, under rows of plants that the drone sees at
+// 0.8 of their height: the ground tells the scale, not the plants.
+TEST(Vertical, AScaleThatTheGroundTellsIsFollowed) {
+  map::GridMap fixed = view(0.3, 0.4, 0.8, true, 1);
+  map::GridMap moving = view(0.3 / 1.2, 0.4, 1.0, false, 2);
+  for (int r = 0; r < fixed.frame.rows; ++r) {
+    for (int c = 0; c < fixed.frame.cols; ++c) {
+      const Eigen::Vector2d p = fixed.frame.centre(r, c);
+      const double hill = 0.1 * std::sin(1.2 * p.x() + 0.3 * p.y());
+      fixed.height(r, c) += static_cast<float>(hill);
+      moving.height(r, c) += static_cast<float>(hill / 1.2);
+    }
+  }
+  const VerticalResult result = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), {});
+  ASSERT_EQ(result.status, VerticalStatus::kOk);
+  EXPECT_TRUE(result.measured_scale.measured());
+  EXPECT_NEAR(result.scale, 1.2, 0.03);
+  EXPECT_LT(worstError(result), 0.01);
+  const Eigen::Affine3d lifted = liftPose(Eigen::Affine2d::Identity(), result);
+  EXPECT_EQ(lifted.linear()(2, 2), result.scale);
+
+  VerticalOptions assumed;
+  assumed.scale = VerticalScaleKind::kAssumed;
+  const VerticalResult as_it_is = fitVertical(fixed, moving, Eigen::Affine2d::Identity(), assumed);
+  EXPECT_EQ(as_it_is.scale, 1.0);
+  EXPECT_FALSE(as_it_is.measured_scale.measured());
+  EXPECT_GT(as_it_is.residual, 2.0 * result.residual);
+}
+
 }  // namespace
 }  // namespace agricolmap::refine
