@@ -84,6 +84,8 @@ TEST_F(FactsTest, WritesAGeoPackageThatOthersRead) {
     ASSERT_NE(layer->GetSpatialRef(), nullptr) << name;
     EXPECT_STREQ(layer->GetSpatialRef()->GetAuthorityCode(nullptr), "32633") << name;
   }
+  ASSERT_NE(file->GetLayerByName("layer_styles"), nullptr);
+  EXPECT_EQ(file->GetLayerByName("layer_styles")->GetFeatureCount(), 7);
   EXPECT_GT(file->GetLayerByName("plants")->GetFeatureCount(), 500);
   OGRLayer* plot = file->GetLayerByName("plots");
   const OGRFeatureUniquePtr first(plot->GetNextFeature());
@@ -99,6 +101,13 @@ TEST_F(FactsTest, WritesAGeoPackageThatOthersRead) {
   EXPECT_EQ(entries("facts").count("brapi.geojson"), 0U);
   EXPECT_EQ(entries("facts").count("plots.csv"), 0U);
   EXPECT_EQ(entries("facts").count("facts.gpkg"), 1U);
+  std::vector<std::string> prescribe = {
+      "prescribe", inFolder("facts"), "-o",      inFolder("rates"),
+      "--layer",   "cover",           "--rates", "160",
+      "120",       "--unit",          "kg/ha",   "--no-pictures"};
+  expectFailure(prescribe, 3, {"facts.gpkg", "does not say its coordinate system", "--crs"});
+  prescribe.insert(prescribe.end(), {"--crs", "EPSG:32633"});
+  EXPECT_EQ(runAgricolmap(prescribe).exit_code, 0);
 }
 
 TEST_F(FactsTest, PlantsWhoseLeavesTouchAreNotCounted) {

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <set>
+#include <utility>
 
 #include "support/cli_fixture.hpp"
 
@@ -46,6 +49,11 @@ TEST_F(FuseTest, AMapGrowsShrinksAndForgetsNothing) {
   const nlohmann::json map = report();
   for (const nlohmann::json& name : map.at("layers")) {
     EXPECT_TRUE(fs::exists(inFolder("map/" + name.get<std::string>()))) << name;
+  }
+  for (const char* name :
+       {"layers/plant_height", "layers/error", "layers/source", "fine/strip_1", "fine/cover"}) {
+    const std::string style = contentOf(inFolder(std::string("map/") + name + ".qml"));
+    EXPECT_NE(style.find("<rasterrenderer"), std::string::npos) << name;
   }
   std::uint64_t kept = 0;
   for (const nlohmann::json& source : map.at("sources")) {
@@ -111,6 +119,70 @@ TEST_F(FuseTest, ARejectedStripIsFusedOnlyByForce) {
   EXPECT_EQ(names(), (std::set<std::string>{"fixed", "strip_1"}));
   fuse({inFolder("strip_2"), "--force", "--cloud-format", "none"});
   EXPECT_EQ(names(), (std::set<std::string>{"fixed", "strip_1", "strip_2"}));
+}
+
+/// A LAS file as this program writes it, uncompressed.
+class LasFile {
+ public:
+  explicit LasFile(std::string bytes) : bytes_(std::move(bytes)) {}
+  std::size_t points() const { return at<std::uint64_t>(247); }
+  std::size_t record(std::size_t i) const {
+    return at<std::uint32_t>(96) + i * at<std::uint16_t>(105);
+  }
+  template <typename T>
+  T at(std::size_t place) const {
+    T value;
+    std::memcpy(&value, &bytes_[place], sizeof(T));
+    return value;
+  }
+  template <typename T>
+  void set(std::size_t place, T value) {
+    std::memcpy(&bytes_[place], &value, sizeof(T));
+  }
+  const std::string& bytes() const { return bytes_; }
+  /// Where a point lies from west to east, in millimetres of a whole metre: it stays as points are
+  /// copied.
+  std::uint16_t millimetres(std::size_t i) const {
+    const double x = at<double>(131) * at<std::int32_t>(record(i)) + at<double>(155);
+    return static_cast<std::uint16_t>(std::llround(1000.0 * x) % 1000);
+  }
+
+ private:
+  std::string bytes_;
+};
+
+TEST_F(FuseTest, MarksOfPointsComeAlongWhereASourceIsLas) {
+  // Intensities by place, so that no point has those of another; a class for each source.
+  const auto mark = [&](const std::string& cloud, const std::string& name, std::uint8_t kind) {
+    LasFile las(contentOf(converted(cloud, "plain_" + name)));
+    for (std::size_t i = 0; i < las.points(); ++i) {
+      las.set(las.record(i) + 12, las.millimetres(i));
+      las.set(las.record(i) + 14, std::uint8_t{0x21});
+      las.set(las.record(i) + 16, kind);
+    }
+    return write(name, las.bytes());
+  };
+  const std::string drone = mark(fixed(), "drone.las", 6);
+  fs::copy(strip(1), inFolder("marked"));
+  mark(inFolder("marked/aligned.ply"), "marked/aligned.las", 40);
+  fs::remove(inFolder("marked/aligned.ply"));
+  run({"fuse", drone, inFolder("marked"), strip(3), "-o", inFolder("map"), "--adjust=false",
+       "--cloud-format", "las"});
+  const LasFile fused(contentOf(inFolder("map/cloud.las")));
+  std::array<std::size_t, 4> of_source{};
+  for (std::size_t i = 0; i < fused.points(); ++i) {
+    const std::size_t record = fused.record(i);
+    const auto source = fused.at<std::uint16_t>(record + 20);
+    ASSERT_LT(source, 4);
+    ++of_source[source];
+    const bool has = source != 3;  // strip 3 is a PLY file
+    ASSERT_EQ(fused.at<std::uint16_t>(record + 12), has ? fused.millimetres(i) : 0) << i;
+    ASSERT_EQ(fused.at<std::uint8_t>(record + 14), has ? 0x21 : 0x11);
+    ASSERT_EQ(fused.at<std::uint8_t>(record + 16), source == 1 ? 6 : source == 2 ? 40 : 0);
+  }
+  EXPECT_GT(of_source[1], 0U);
+  EXPECT_GT(of_source[2], 0U);
+  EXPECT_GT(of_source[3], 0U);
 }
 
 }  // namespace

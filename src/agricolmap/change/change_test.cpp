@@ -157,6 +157,32 @@ TEST(Totals, WhatIsShiftedLeavesHereAndArrivesThere) {
   EXPECT_NEAR(totals(a, sloped).compared.meanDeviation(), 0.2 * 0.05 / std::sqrt(2.0), 5e-4);
 }
 
+TEST(ZoneChanges, AreTotalsOfTheirCells) {
+  const MapHeights a = slopedMap(10, 10, 0.1, 0.02F, 0.01F);
+  MapHeights b = slopedMap(10, 10, 0.1, 0.02F, 0.01F);
+  for (int c = 0; c < 10; ++c) b.surface(2, c) += 0.2F;
+  Raster<std::int32_t> zones(10, 10, -1);
+  for (int r = 0; r < 10; ++r) {
+    for (int c = 0; c < 8; ++c) zones(r, c) = c < 4 ? 0 : 2;
+  }
+  const HeightChange change = heightChange(a, b, kCell);
+  const std::vector<ZoneChange> found = zoneChanges(change, a, b, kCell, {}, zones, 3);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].compared.cells, 40U);
+  EXPECT_EQ(found[0].rise.cells, 4U);
+  EXPECT_EQ(found[0].fall.cells, 0U);
+  EXPECT_NEAR(found[0].compared.mean(), 0.02, 1e-6);
+  EXPECT_EQ(found[1].compared.cells, 0U);
+  EXPECT_EQ(found[2].compared.volume, found[0].compared.volume);
+  // One zone of all cells is the field.
+  const Raster<std::int32_t> all(10, 10, 0);
+  const ZoneChange whole = zoneChanges(change, a, b, kCell, {}, all, 1).front();
+  const Totals t = totalsOf(change, a, b, kCell, {}, nullptr);
+  EXPECT_EQ(whole.compared.volume, t.compared.volume);
+  EXPECT_EQ(whole.compared.deviation, t.compared.deviation);
+  EXPECT_EQ(whole.rise.cells, t.rise.cells);
+}
+
 TEST(Totals, LookAtWhatShouldNotHaveChanged) {
   const MapHeights a = flatMap(4, 4, 0.0F, 0.0F, 0.01F);
   const MapHeights b = flatMap(4, 4, 0.02F, 0.0F, 0.01F);

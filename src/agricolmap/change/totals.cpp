@@ -114,13 +114,23 @@ class Sum {
   Sources of_b_;
 };
 
+/// Of a set of cells: all, and those that changed by more than their level.
+struct Sums {
+  Sum compared;
+  Sum rise;
+  Sum fall;
+
+  void add(float change, bool significant, const Look& a, const Look& b) {
+    compared.add(change, a, b);
+    if (significant) (change > 0.0F ? rise : fall).add(change, a, b);
+  }
+};
+
 }  // namespace
 
 Totals totalsOf(const HeightChange& change, const MapHeights& a, const MapHeights& b, double cell,
                 const FrameError& frames, const Raster<std::uint8_t>* stable) {
-  Sum compared;
-  Sum rise;
-  Sum fall;
+  Sums sums;
   Sum unchanged;
   std::vector<float> levels;
   for (int row = 0; row < change.change.rows(); ++row) {
@@ -131,18 +141,40 @@ Totals totalsOf(const HeightChange& change, const MapHeights& a, const MapHeight
       levels.push_back(change.detection(row, col));
       const Look of_a = lookAt(a, row, col, cell);
       const Look of_b = lookAt(b, row, col, cell);
-      compared.add(value, of_a, of_b);
-      if (change.significant(row, col) > 0.0F) (value > 0.0F ? rise : fall).add(value, of_a, of_b);
+      sums.add(value, change.significant(row, col) > 0.0F, of_a, of_b);
       if (stable != nullptr && (*stable)(row, col) != 0) unchanged.add(value, of_a, of_b);
     }
   }
   Totals totals;
-  totals.compared = compared.share(cell, frames);
-  totals.rise = rise.share(cell, frames);
-  totals.fall = fall.share(cell, frames);
+  totals.compared = sums.compared.share(cell, frames);
+  totals.rise = sums.rise.share(cell, frames);
+  totals.fall = sums.fall.share(cell, frames);
   if (!levels.empty()) totals.median_detection = static_cast<double>(median(levels));
   if (stable != nullptr) totals.stable = unchanged.share(cell, frames);
   return totals;
+}
+
+std::vector<ZoneChange> zoneChanges(const HeightChange& change, const MapHeights& a,
+                                    const MapHeights& b, double cell, const FrameError& frames,
+                                    const Raster<std::int32_t>& zones, std::size_t count) {
+  std::vector<Sums> sums(count);
+  for (int row = 0; row < change.change.rows(); ++row) {
+    throwIfInterrupted();
+    for (int col = 0; col < change.change.cols(); ++col) {
+      const float value = change.change(row, col);
+      if (zones(row, col) < 0 || std::isnan(value)) continue;
+      sums[static_cast<std::size_t>(zones(row, col))].add(
+          value, change.significant(row, col) > 0.0F, lookAt(a, row, col, cell),
+          lookAt(b, row, col, cell));
+    }
+  }
+  std::vector<ZoneChange> zones_found;
+  zones_found.reserve(count);
+  for (Sums& of : sums) {
+    zones_found.push_back({of.compared.share(cell, frames), of.rise.share(cell, frames),
+                           of.fall.share(cell, frames)});
+  }
+  return zones_found;
 }
 
 Raster<std::uint8_t> bareGround(const Raster<float>& cover_a, const Raster<float>& cover_b) {

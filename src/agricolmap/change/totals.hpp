@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "agricolmap/change/height_change.hpp"
 
@@ -37,6 +38,18 @@ struct Totals {
 /// change is expected, or nullptr.
 Totals totalsOf(const HeightChange& change, const MapHeights& a, const MapHeights& b, double cell,
                 const FrameError& frames, const Raster<std::uint8_t>* stable);
+
+/// Of a part of the field, as a plot.
+struct ZoneChange {
+  Share compared;
+  Share rise;  ///< significant cells, up
+  Share fall;  ///< and down
+};
+
+/// The same by parts: `zones` has a number below `count` per cell, or −1.
+std::vector<ZoneChange> zoneChanges(const HeightChange& change, const MapHeights& a,
+                                    const MapHeights& b, double cell, const FrameError& frames,
+                                    const Raster<std::int32_t>& zones, std::size_t count);
 
 /// Where there is next to no vegetation in either map: 1 where both covers are below 0.1.
 Raster<std::uint8_t> bareGround(const Raster<float>& cover_a, const Raster<float>& cover_b);

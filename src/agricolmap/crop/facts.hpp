@@ -36,8 +36,8 @@ struct StandFacts {
   double row_length = 0.0;   ///< [m]
   double uncounted = 0.0;    ///< of it where plants cannot be told apart [m]
   std::size_t counted = 0;   ///< plants told apart
-  double plants = 0.0;       ///< these, and one per spacing where they cannot be told apart
-  double plants_low = 0.0;   ///< by what is doubtful of each plant; not calibrated
+  double plants = 0.0;       ///< expected, and one per spacing where they cannot be told apart
+  double plants_low = 0.0;   ///< hold the truth nine times in ten, on simulated fields
   double plants_high = 0.0;  ///< (docs/crop-facts.md)
   std::size_t gaps = 0;      ///< whose middle is here
   double gap_length = 0.0;   ///< of these [m]

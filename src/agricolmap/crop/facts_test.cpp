@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "agricolmap/crop/test_crop.hpp"
 
@@ -78,6 +79,61 @@ TEST(Facts, OfAViewWithoutHeightsThereAreNone) {
   const FieldFacts facts = factsOf(field.view(), {0.0, 0.0}, {}, {});
   EXPECT_TRUE(facts.countable);
   EXPECT_TRUE(std::isnan(facts.total.height.middle));
+}
+
+/// A field whose rows run from west to east, of which nothing is shown south of `y`; how many of
+/// its plants stand on what is shown.
+struct CutField {
+  explicit CutField(double y) : field(sownField()) {
+    const int cut = static_cast<int>(std::lround(y / field.frame.cell));
+    for (int r = 0; r < cut; ++r) {
+      for (int c = 0; c < field.frame.cols; ++c) {
+        field.exg(r, c) = std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+    for (const Eigen::Vector2d& plant : field.plants) shown += plant.y() > y ? 1.0 : 0.0;
+  }
+  FieldFacts facts() const { return factsOf(field.view(), {0.0, 0.0}, {}, {}); }
+
+  TestField field;
+  double shown = 0.0;
+};
+
+// Rows lie on multiples of half a metre, plants are 10 cm across and about 40 are in a row.
+
+TEST(Facts, ABorderBetweenRowsLeavesNoDoubt) {
+  const CutField cut(2.25);
+  const FieldFacts facts = cut.facts();
+  ASSERT_TRUE(facts.countable);
+  EXPECT_LE(facts.total.plants_low, cut.shown);
+  EXPECT_GE(facts.total.plants_high, cut.shown);
+  EXPECT_LT(facts.total.plants_high - facts.total.plants_low, 20.0);
+}
+
+TEST(Facts, ARowOfWhichLeavesAloneAreShownMayBeOnTheMap) {
+  // Leaves of the row at 2.0 m reach 1 to 2 cm over the border: no row is found there.
+  const CutField cut(2.035), between(2.25);
+  const FieldFacts facts = cut.facts();
+  ASSERT_TRUE(facts.countable);
+  ASSERT_EQ(facts.rows.rows.size(), between.facts().rows.rows.size());
+  EXPECT_NEAR(facts.total.plants, between.shown, 6.0);
+  EXPECT_LE(facts.total.plants_low, cut.shown);
+  EXPECT_GE(facts.total.plants_high, cut.shown + 35.0);
+}
+
+TEST(Facts, ARowThatRunsAlongTheBorderIsInDoubtBothWays) {
+  // Of the row at 2.0 m two thirds are shown: it is found, and nobody knows where its stems are.
+  const CutField cut(1.985), between(2.25);
+  const FieldFacts facts = cut.facts();
+  ASSERT_TRUE(facts.countable);
+  ASSERT_EQ(facts.rows.rows.size(), between.facts().rows.rows.size() + 1);
+  EXPECT_LE(facts.total.plants_low, between.shown);
+  EXPECT_GE(facts.total.plants_high, between.shown + 36.0);
+  std::size_t doubtful = 0;
+  for (const StandFacts& row : facts.per_row) {
+    doubtful += row.plants_high - row.plants_low > 20.0 ? 1U : 0U;
+  }
+  EXPECT_EQ(doubtful, 1U);
 }
 
 }  // namespace

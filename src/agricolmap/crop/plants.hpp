@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "agricolmap/crop/row_profile.hpp"
+#include "agricolmap/crop/plant_chain.hpp"
 
 namespace agricolmap::crop {
 
@@ -16,6 +16,12 @@ struct CropPlant {
   double certainty = 1.0;  ///< that it is one plant, and no less than one
 };
 
+/// A place where a plant may be: what is certain is 1, else several share what one plant is.
+struct PossiblePlant {
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< [m]
+  double probability = 0.0;
+};
+
 /// A piece of a row.
 struct Stretch {
   double from = 0.0;  ///< along the row [m]
@@ -24,19 +30,18 @@ struct Stretch {
 };
 
 struct RowPlants {
-  std::vector<CropPlant> plants;  ///< in order along the row
-  std::vector<Stretch> touching;  ///< where plants cannot be told apart
-  std::vector<Stretch> gaps;      ///< from stem to stem, of 1.5 spacings and more
-  double unseen = 0.0;            ///< plants' worth of what may hide among what was left out
+  std::vector<CropPlant> plants;        ///< in order along the row
+  std::vector<Stretch> touching;        ///< where plants cannot be told apart
+  std::vector<Stretch> gaps;            ///< from stem to stem, of 1.5 spacings and more
+  std::vector<PossiblePlant> possible;  ///< over all explanations of the row
+  double variance = 0.0;                ///< of the number of plants over these
 };
 
-/// Finds the plants of a row that stand about `distance` apart. `usual`: the height of the curve at
-/// a usual plant, as usualTop gives it.
+/// The plants that the likeliest explanation of a row's pieces has, where they are and what is
+/// between them.
 RowPlants findPlants(const GridFrame& frame, const Raster<float>& green, const RowLine& line,
-                     const RowProfile& profile, double half, double distance, double usual);
-
-/// Median height of the tops of all rows' curves, smoothed for this distance of plants [m].
-double usualTop(const std::vector<RowProfile>& rows, double distance);
+                     const RowProfile& profile, const std::vector<Piece>& pieces,
+                     const Chain& chain, const StandModel& model);
 
 inline constexpr double kGapSpacings = 1.5;
 

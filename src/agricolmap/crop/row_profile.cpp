@@ -15,6 +15,7 @@ constexpr double kMostDistance = 0.60;   // [m]
 constexpr double kAround = 1.0;          // over which a row's usual greenness is taken [m]
 constexpr double kLeastClearness = 0.03;
 constexpr double kPlantWide = 0.1;  // pieces of row that know nothing of one another [m]
+constexpr double kLeafy = 0.2;      // greenness that is no soil's noise
 constexpr double kChance = 1.5;     // deviations of the correlation of such pieces
 
 /// The curve less its mean over a metre about, its highest tops cut: one large plant is not more
@@ -77,6 +78,8 @@ RowProfile profileOf(const GridFrame& frame, const Raster<float>& green, const R
   const int cols = around.values.cols();
   profile.green.resize(static_cast<std::size_t>(cols), 0.0);
   profile.known.resize(static_cast<std::size_t>(cols), 0.0);
+  profile.leafy.resize(static_cast<std::size_t>(cols), 0.0);
+  profile.lean.resize(static_cast<std::size_t>(cols), 0.0);
   std::vector<double> between;
   const int inside = std::max(1, static_cast<int>(half / step));
   const int middle = around.middle();
@@ -92,6 +95,10 @@ RowProfile profileOf(const GridFrame& frame, const Raster<float>& green, const R
       if (aside <= inside) {
         sum += value;
         known += 1.0;
+        if (value > kLeafy) {
+          profile.leafy[static_cast<std::size_t>(c)] += value * step;
+          profile.lean[static_cast<std::size_t>(c)] += value * step * (r - middle) * step;
+        }
       } else if (aside * step > 0.35 * spacing) {
         beside += value;
         beside_known += 1.0;

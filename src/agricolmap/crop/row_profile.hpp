@@ -14,6 +14,8 @@ struct RowProfile {
   double length = 0.0;        ///< of the row [m]
   std::vector<double> green;  ///< width that is green [m]; 0 where nothing is known
   std::vector<double> known;  ///< share of the width that the map shows
+  std::vector<double> leafy;  ///< of `green`, what is clearly so [m] …
+  std::vector<double> lean;   ///< … times how far to the left of the line it is [m²]
   double noise = 0.0;         ///< deviation of `green` over what is no row [m]
 
   int size() const { return static_cast<int>(green.size()); }

@@ -11,7 +11,8 @@ namespace agricolmap::crop {
 
 namespace {
 
-constexpr double kTwoSided = 1.96;
+constexpr double kTwoSided = 1.645;      // of nine in ten
+constexpr double kRowEnd = 0.1;          // variance of plants at an end of a row: on the map or off
 constexpr double kPieceStep = 0.1;       // of rows, when they are shared out to parts [m]
 constexpr double kTouchingError = 0.25;  // of the number that stands for plants that touch
 
@@ -26,10 +27,8 @@ int zoneAt(const GridFrame& frame, const Zones& zones, const Eigen::Vector2d& po
 struct Sums {
   double green = 0.0;
   double weed = 0.0;
-  double doubt = 0.0;     ///< sum of 1 − certainty
-  double variance = 0.0;  ///< of the count
-  double unseen = 0.0;
-  double row_area = 0.0;
+  double plants = 0.0;    ///< expected
+  double variance = 0.0;  ///< of them
   std::vector<double> heights;
 };
 
@@ -43,11 +42,28 @@ void sumCells(const GridFrame& frame, const Zones& zones, const FieldFacts& fiel
     if (field.greenness.green[i] > field.greenness.leaf) sums[z].green += cell;
     if (bands.band.empty() || bands.band[i] == Band::kOutside) continue;
     if (bands.band[i] != Band::kBetween) {
-      sums[z].row_area += cell;
       continue;
     }
     facts[z].between += cell;
     if (field.weeds.mask[i] != 0) sums[z].weed += cell;
+  }
+}
+
+/// What may be plants, and how uncertain their number is: explanations of a row that differ in one
+/// place exclude one another, so a part has its share of the row's variance.
+template <typename ZoneAt>
+void shareDoubt(const RowPlants& stand, const ZoneAt& at, std::vector<Sums>& sums) {
+  double doubt = 0.0;
+  for (const PossiblePlant& plant : stand.possible) {
+    doubt += plant.probability * (1.0 - plant.probability);
+  }
+  for (const PossiblePlant& plant : stand.possible) {
+    const int zone = at(plant.place);
+    if (zone < 0) continue;
+    Sums& sum = sums[static_cast<std::size_t>(zone)];
+    sum.plants += plant.probability;
+    const double own = plant.probability * (1.0 - plant.probability);
+    if (doubt > 0.0) sum.variance += stand.variance * own / doubt;
   }
 }
 
@@ -63,10 +79,12 @@ void sumRows(const GridFrame& frame, const Zones& zones, const FieldFacts& field
     }
   };
   for (const FieldRow& row : field.rows.rows) {
-    share(row.line, {0.0, row.line.length()}, [&](std::size_t zone, double part) {
-      facts[zone].row_length += part;
-      sums[zone].unseen += row.stand.unseen * part / row.line.length();
-    });
+    share(row.line, {0.0, row.line.length()},
+          [&](std::size_t zone, double part) { facts[zone].row_length += part; });
+    for (const double end : {0.0, row.line.length()}) {
+      const int zone = at(row.line.at(end).point);
+      if (zone >= 0) sums[static_cast<std::size_t>(zone)].variance += kRowEnd;
+    }
     for (const Stretch& stretch : row.stand.touching) {
       share(row.line, stretch,
             [&](std::size_t zone, double part) { facts[zone].uncounted += part; });
@@ -76,9 +94,8 @@ void sumRows(const GridFrame& frame, const Zones& zones, const FieldFacts& field
       if (zone < 0) continue;
       const auto z = static_cast<std::size_t>(zone);
       ++facts[z].counted;
-      sums[z].doubt += 1.0 - plant.certainty;
-      sums[z].variance += plant.certainty * (1.0 - plant.certainty);
     }
+    shareDoubt(row.stand, at, sums);
     for (const Stretch& gap : row.stand.gaps) {
       const int zone = at(row.line.at(0.5 * (gap.from + gap.to)).point);
       if (zone < 0) continue;
@@ -102,20 +119,13 @@ void finish(const FieldFacts& field, StandFacts& facts, Sums& sums) {
   facts.height = ranksOf(sums.heights);
   const double distance = field.rows.spacing.distance;
   if (!field.countable) return;
-  const auto counted = static_cast<double>(facts.counted);
   const double touching = facts.uncounted / distance;
-  facts.plants = counted + touching;
-  // As many weeds to the square metre stand in the rows as between them; where a plant is missing
-  // they count as one, elsewhere they are taken for leaves of the plant beside them.
-  const double missing = facts.row_length > 0.0 ? facts.gap_length / facts.row_length : 0.0;
-  const double in_rows = facts.between > 0.0 ? static_cast<double>(facts.patches) / facts.between *
-                                                   sums.row_area * missing
-                                             : 0.0;
+  facts.plants = sums.plants + touching;
   const double error = kTouchingError * touching;
-  const double spread =
-      kTwoSided * std::sqrt(sums.variance + sums.unseen + in_rows + error * error);
-  facts.plants_low = std::max(0.0, facts.plants - sums.doubt - in_rows - spread);
-  facts.plants_high = facts.plants + sums.unseen + spread;
+  const double model = field.rows.model_error * facts.plants;
+  const double spread = kTwoSided * std::sqrt(sums.variance + error * error + model * model);
+  facts.plants_low = std::max(0.0, facts.plants - spread);
+  facts.plants_high = facts.plants + spread;
 }
 
 }  // namespace

@@ -15,6 +15,11 @@ namespace {
 constexpr double kLeastArea = 0.5;          ///< that two strips share [m²]
 constexpr double kLeastCorrelation = 0.35;  ///< for an offset to be believed
 constexpr double kOffsetDeviation = 0.005;  ///< to which an offset is told, in the plane [m]
+/// Less area tells it less well, as where strips end they see plants from one side alone [m²].
+constexpr double kEnoughArea = 4.0;
+/// Of what two strips share as they lie, so much must still be shared where they are tried: where
+/// corners alone overlap any two are alike.
+constexpr double kLeastShared = 0.5;
 constexpr double kHeightDeviation = 0.003;  ///< and in height [m]
 
 /// Sums of a correlation.
@@ -34,6 +39,12 @@ struct Sums {
     if (!(n > 0.0 && var_a > 1e-9 && var_b > 1e-9)) return 0.0;
     return (ab - a * b / n) / std::sqrt(var_a * var_b);
   }
+};
+
+/// How alike two strips are where both have cells.
+struct Likeness {
+  double cells = 0.0;
+  double correlation = 0.0;
 };
 
 /// Both strips on a lattice, and which of their cells belong together.
@@ -58,15 +69,15 @@ struct Shared {
       }
     }
   }
-  double score(int rows, int cols) const {
+  Likeness likeness(int rows, int cols) const {
     Sums height, exg;
     each(rows, cols, [&](std::size_t i, std::size_t k) {
       height.add(first.height[i], second.height[k]);
       exg.add(first.exg[i], second.exg[k]);
     });
     // A channel that one of the two has not says nothing.
-    return std::max({height.correlation(), exg.correlation(),
-                     0.5 * (height.correlation() + exg.correlation())});
+    return {height.n, std::max({height.correlation(), exg.correlation(),
+                                0.5 * (height.correlation() + exg.correlation())})};
   }
   double area() const {
     double cells = 0.0;
@@ -78,34 +89,43 @@ struct Shared {
 struct Peak {
   int row = 0;
   int col = 0;
-  double score = -1.0;
+  double correlation = 0.0;
   Eigen::Vector2d between = Eigen::Vector2d::Zero();  ///< (col, row) beside the cell
 };
 
 Peak peakWithin(const Shared& shared, int row, int col, int reach) {
+  constexpr double kNowhere = -2.0;
   const int side = 2 * reach + 1;
+  const double least = kLeastShared * shared.likeness(0, 0).cells;
   Raster<double> scores(side, side);
-  parallelFor(static_cast<std::size_t>(side), [&](std::size_t r) {
+  parallelFor(static_cast<std::size_t>(side), [&](std::size_t i) {
+    const int r = static_cast<int>(i);
     for (int c = 0; c < side; ++c) {
-      scores(static_cast<int>(r), c) =
-          shared.score(row + static_cast<int>(r) - reach, col + c - reach);
+      const Likeness alike = shared.likeness(row + r - reach, col + c - reach);
+      scores(r, c) = alike.cells >= least ? alike.correlation : kNowhere;
     }
   });
   const auto best =
       static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
   const int r = static_cast<int>(best) / side, c = static_cast<int>(best) % side;
   Peak peak{row + r - reach, col + c - reach, scores[best], {}};
+  const auto between = [&](double before, double after) {
+    return before > kNowhere && after > kNowhere ? parabolaVertex(before, scores(r, c), after)
+                                                 : 0.0;
+  };
   if (r > 0 && r + 1 < side && c > 0 && c + 1 < side) {
-    peak.between = {parabolaVertex(scores(r, c - 1), scores(r, c), scores(r, c + 1)),
-                    parabolaVertex(scores(r - 1, c), scores(r, c), scores(r + 1, c))};
+    peak.between = {between(scores(r, c - 1), scores(r, c + 1)),
+                    between(scores(r - 1, c), scores(r + 1, c))};
   }
   return peak;
 }
 
-double deviationOf(const StripErrors& a, const StripErrors& b, bool height) {
-  const double own = height ? std::hypot(a.height, b.height)
-                            : std::hypot(a.plane, b.plane) / std::sqrt(2.0);  // per axis
-  return std::hypot(own, height ? kHeightDeviation : kOffsetDeviation);
+/// How many deviations an offset is off, by what both strips state and how well it is told.
+double sigmasOf(const Disagreement& found, const StripErrors& a, const StripErrors& b) {
+  const double plane = std::hypot(std::hypot(a.plane, b.plane) / std::sqrt(2.0), found.deviation);
+  const double height = std::hypot(std::hypot(a.height, b.height), kHeightDeviation);
+  return std::max(found.offset.head<2>().norm() / plane / std::sqrt(2.0),
+                  std::abs(found.offset.z()) / height);
 }
 
 /// Two of the strips.
@@ -130,19 +150,17 @@ std::optional<Disagreement> compare(const Pair& pair, const std::vector<const St
   const Shared fine{first_fine, second_fine, coarse.row_offset * factor,
                     coarse.col_offset * factor};
   const Peak peak = peakWithin(fine, rough.row * factor, rough.col * factor, factor + 1);
-  if (peak.score < kLeastCorrelation) return std::nullopt;
+  if (peak.correlation < kLeastCorrelation) return std::nullopt;
   std::vector<double> rises;
   fine.each(peak.row, peak.col, [&](std::size_t i, std::size_t k) {
     rises.push_back(static_cast<double>(second_fine.height[k] - first_fine.height[i]));
   });
   const double step = cell / factor;
-  found.correlation = peak.score;
+  found.correlation = peak.correlation;
+  found.deviation = kOffsetDeviation * std::max(1.0, kEnoughArea / found.area);
   found.offset = {step * (peak.col + peak.between.x()), step * (peak.row + peak.between.y()),
                   median(rises)};
-  const double plane = deviationOf(errors[pair.first], errors[pair.second], false);
-  const double height = deviationOf(errors[pair.first], errors[pair.second], true);
-  found.sigmas = std::max(found.offset.head<2>().norm() / plane / std::sqrt(2.0),
-                          std::abs(found.offset.z()) / height);
+  found.sigmas = sigmasOf(found, errors[pair.first], errors[pair.second]);
   return found;
 }
 
@@ -177,7 +195,7 @@ std::vector<Eigen::Vector3d> adjustedShifts(const std::vector<Disagreement>& off
     }
     for (const Disagreement& pair : offsets) {
       if (!pair.plausible()) continue;
-      const double deviation = height ? kHeightDeviation : kOffsetDeviation;
+      const double deviation = height ? kHeightDeviation : pair.deviation;
       const double weight = 1.0 / (deviation * deviation);
       const auto a = static_cast<Eigen::Index>(pair.first);
       const auto b = static_cast<Eigen::Index>(pair.second);

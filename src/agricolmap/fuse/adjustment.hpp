@@ -22,6 +22,7 @@ struct Disagreement {
   /// What must be added to the first one's places for the two to agree [m].
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   double correlation = 0.0;  ///< of heights and greenness there, −1…1
+  double deviation = 0.0;    ///< to which the offset is told, per axis of the plane [m]
   double sigmas = 0.0;       ///< how large the offset is, in deviations that the errors allow
   /// Within what the errors allow (3.5 deviations); else one of the two is wrong, and neither moved
   /// for it.
@@ -41,8 +42,8 @@ struct FineStrips {
 };
 
 /// Compares all pairs that share at least 0.5 m² and are alike enough there for their offset to be
-/// told: correlation of the surfaces and of the greenness, within kFarthest, between cells by
-/// parabolas.
+/// told: correlation of the surfaces and of the greenness, within kFarthest and where half of what
+/// both saw is left, between cells by parabolas. A small overlap tells it less well.
 std::vector<Disagreement> compareStrips(const std::vector<const StripCells*>& strips,
                                         const FineStrips& fine,
                                         const std::vector<StripErrors>& errors);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
 
@@ -12,6 +13,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/fuse/point_rule.hpp"
 #include "agricolmap/io/las/las_copy.hpp"
+#include "agricolmap/io/las/las_marks.hpp"
 #include "agricolmap/io/las/las_writer.hpp"
 
 namespace agricolmap::fuse {
@@ -58,12 +60,12 @@ struct SourceOfPoints {
   std::int32_t date = 0;
 };
 
-bool store(const FusedPoint& point, const SourceOfPoints& source, const io::LasOutline& outline,
-           std::byte* record) {
-  constexpr std::size_t kReturns = 14, kSourceId = 20;
+bool store(const FusedPoint& point, const io::PointMarks& marks, const SourceOfPoints& source,
+           const io::LasOutline& outline, std::byte* record) {
+  constexpr std::size_t kSourceId = 20;
   constexpr std::uint16_t kWide = 257;
   if (!outline.store(outline.offset + point.place.cast<double>(), record)) return false;
-  io::storeLe(record + kReturns, std::uint8_t{0x11});  // the first of one return
+  io::storeMarks(marks, record);
   io::storeLe(record + kSourceId, source.code);
   std::byte* const rgb = record + *outline.layout.rgb;
   io::storeLe(rgb, static_cast<std::uint16_t>(kWide * point.colour.r));
@@ -87,7 +89,7 @@ std::uint64_t append(const PointStream& cloud, const Eigen::Vector3d& origin,
   const std::size_t length = outline.layout.length;
   std::vector<std::vector<std::byte>> chunks;
   std::uint64_t kept = 0;
-  cloud.pass([&](const PointBatch& batch) {
+  io::passMarked(cloud, [&](const PointBatch& batch, std::span<const io::PointMarks> marks) {
     chunks.resize((batch.size() + kChunk - 1) / kChunk);
     parallelFor(chunks.size(), [&](std::size_t chunk) {
       std::vector<std::byte>& records = chunks[chunk];
@@ -98,7 +100,8 @@ std::uint64_t append(const PointStream& cloud, const Eigen::Vector3d& origin,
             rule(batch.xyz[i] + shift, batch.rgb.empty() ? Rgb{} : batch.rgb[i]);
         if (!point) continue;
         records.resize(records.size() + length);
-        if (!store(*point, source, outline, &records[records.size() - length])) {
+        if (!store(*point, marks.empty() ? io::PointMarks{} : marks[i], source, outline,
+                   &records[records.size() - length])) {
           throw UsageError("points are more than 2000 km apart, too far for LAS");
         }
       }

@@ -124,15 +124,24 @@ TEST(Owners, DoNotDependOnTheOrderOfStrips) {
   EXPECT_EQ(ownersOf(fixed, {{&deep, 2, 0, 0.04}, {&same, 3, 0, 0.01}})(1, 5), 3);
 }
 
-/// Two strips of one field, the second of which is laid `off`.
+/// Two strips of one field, the second of which is laid `off`; `shared` is how wide a piece both
+/// saw, `noise` of their heights, all in metres. They run at an angle to the cells.
 class TwoStrips {
  public:
-  explicit TwoStrips(const Eigen::Vector3d& off) {
+  explicit TwoStrips(const Eigen::Vector3d& off, double shared = 1.0, double noise = 0.0) {
     const auto bumps = [](double x, double y) {
       return 0.1 * std::sin(7.0 * x + 2.0 * std::sin(3.0 * y)) * std::cos(5.0 * y + x);
     };
     clouds_.push_back(groundCloud({1.0, 1.0}, {5.0, 3.0}, 0.01, bumps));
-    clouds_.push_back(groundCloud({1.0, 2.0}, {5.0, 4.0}, 0.01, bumps));
+    clouds_.push_back(groundCloud({1.0, 3.0 - shared}, {5.0, 5.0 - shared}, 0.01, bumps));
+    Random random(3);
+    const Eigen::Rotation2Df turn(0.1F);
+    for (Cloud& cloud : clouds_) {
+      for (Eigen::Vector3f& p : cloud.xyz) {
+        p.head<2>() = turn * p.head<2>();
+        p.z() += static_cast<float>(noise * random.normal());
+      }
+    }
     for (Eigen::Vector3f& p : clouds_[1].xyz) p += off.cast<float>();
     for (const Cloud& cloud : clouds_) {
       cells_.push_back(stripCells(CloudStream(cloud), stay_, lattice_, 0.2));
@@ -162,6 +171,17 @@ TEST(Adjustment, FindsHowFarStripsLieApartAndMovesTheWorse) {
   const auto shifts = adjustedShifts(found, errors);
   EXPECT_LT(shifts[0].norm(), 0.005);
   EXPECT_NEAR((shifts[0] - shifts[1] - off).norm(), 0.0, 0.01);
+}
+
+TEST(Adjustment, ANarrowOverlapTellsLess) {
+  const std::vector<StripErrors> errors{{0.01, 0.01}, {0.01, 0.01}};
+  const auto found = TwoStrips({0.01, 0.0, 0.0}, 0.2, 0.03).compared(errors);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR((found[0].offset - Eigen::Vector3d(0.01, 0.0, 0.0)).norm(), 0.0, 0.005);
+  EXPECT_GT(found[0].deviation, 0.01);
+  EXPECT_LT(adjustedShifts(found, errors)[0].norm(), 0.003);
+  // Of strips that are hardly alike none is found where they touch with their corners alone.
+  EXPECT_TRUE(TwoStrips({0.01, 0.0, 0.0}, 0.15, 0.2).compared(errors).empty());
 }
 
 TEST(Adjustment, WhatNoErrorExplainsIsSaidAndNotSpreadOut) {

@@ -1,15 +1,19 @@
 #include "agricolmap/fuse/layer_files.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
+#include "agricolmap/fuse/fine_layers.hpp"
 #include "agricolmap/io/raster/geo_writer.hpp"
+#include "agricolmap/io/raster/mosaic_writer.hpp"
 
 namespace agricolmap::fuse {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// Writes files of one grid and keeps their names.
 class Files {
@@ -71,49 +75,71 @@ std::vector<std::string> writeWhole(const Place& place, const SharedMap& map, co
   files.floats("layers/error.tif", {{&layers.plane_error, "plane error", "m"},
                                     {&layers.height_error, "height error", "m"}});
   files.codes("layers/source.tif", {&layers.source, "source", ""});
-  files.codes("layers/date.tif", {&layers.date, "date", ""});
+  const auto dated = [](std::int32_t date) { return date != 0; };
+  if (std::any_of(layers.date.begin(), layers.date.end(), dated)) {
+    files.codes("layers/date.tif", {&layers.date, "date", ""});
+  }
   Raster<std::uint8_t> mask(layers.frame.rows, layers.frame.cols);
   for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = layers.source[i] == kNoSource ? 0 : 255;
   files.colours("layers/colour.tif", layers.colour, mask);
   return files.take();
 }
 
-/// What a strip shows in its own cells, where it owns those of the map.
-struct FineLayers {
-  Raster<float> surface, ground, plant_height, exg, cover, density;
-  Raster<Rgb> colour;
-  Raster<std::uint8_t> mask;
-};
+/// Where the files of a strip lie in the whole field's.
+io::MosaicPiece pieceOf(const SharedMap& map, const FusedStrip& strip, const map::GridMap& own) {
+  return {.file = {},
+          .row = strip.cells.row * map.lattice.factor,
+          .col = strip.cells.col * map.lattice.factor,
+          .rows = own.frame.rows,
+          .cols = own.frame.cols};
+}
 
-FineLayers fineLayers(const SharedMap& map, const FusedStrip& strip, const map::GridMap& own,
-                      bool match_colours) {
-  const Tone tone = match_colours ? strip.tone : Tone{};
-  FineLayers fine;
-  for (Raster<float>* raster :
-       {&fine.surface, &fine.ground, &fine.plant_height, &fine.exg, &fine.cover, &fine.density}) {
-    *raster = Raster<float>(own.frame.rows, own.frame.cols, kNone);
-  }
-  fine.colour = Raster<Rgb>(own.frame.rows, own.frame.cols);
-  fine.mask = Raster<std::uint8_t>(own.frame.rows, own.frame.cols);
-  const auto area = static_cast<float>(own.frame.cell * own.frame.cell);
-  for (int r = 0; r < own.frame.rows; ++r) {
-    for (int c = 0; c < own.frame.cols; ++c) {
-      const std::size_t i = own.weight.index(r, c);
-      const int row = strip.cells.row + r / map.lattice.factor;
-      const int col = strip.cells.col + c / map.lattice.factor;
-      if (!own.valid(i) || map.layers.source(row, col) != strip.code) continue;
-      fine.surface[i] = own.height[i];
-      fine.ground[i] = map.layers.ground(row, col);
-      fine.plant_height[i] = own.height[i] - map.layers.ground(row, col);
-      fine.cover[i] = strip.greenness.cover(own.exg[i]);
-      fine.density[i] = own.weight[i] / area;
-      fine.colour[i] = tone(own.colour[i]);
-      fine.exg[i] =
-          match_colours ? map::excessGreen(fine.colour[i], map::ExgKind::kChromatic) : own.exg[i];
-      fine.mask[i] = 255;
+/// A layer of the whole field, and in which files and bands of a strip it is in fine cells.
+struct FineLayer {
+  const char* layer;
+  const char* ending;  ///< of the strip's file
+  int band;
+  const char* unit;
+  bool heights;  ///< whether flat maps and strips have none
+};
+constexpr FineLayer kFineLayers[] = {
+    {"surface", "_heights.tif", 1, "m", true}, {"ground", "_heights.tif", 2, "m", true},
+    {"plant_height", ".tif", 1, "m", true},    {"exg", ".tif", 2, "", false},
+    {"cover", ".tif", 3, "", false},           {"density", ".tif", 4, "1/m2", false},
+    {"colour", "_colour.tif", 1, "", false}};
+
+/// The whole field in the strips' cells, of all files together: `fine/LAYER.vrt`.
+std::vector<std::string> writeMosaics(
+    const Place& place, const SharedMap& map,
+    const std::vector<std::pair<const FusedStrip*, io::MosaicPiece>>& pieces, const Crs& crs) {
+  const int factor = map.lattice.factor;
+  io::Mosaic mosaic;
+  mosaic.frame = map.layers.frame;
+  mosaic.frame.cell /= factor;
+  mosaic.frame.rows *= factor;
+  mosaic.frame.cols *= factor;
+  mosaic.origin = map.layers.origin;
+  mosaic.crs = crs.wkt;
+  std::vector<std::string> names;
+  for (const FineLayer& fine : kFineLayers) {
+    if (fine.heights && map.flat) continue;
+    mosaic.name = fine.layer;
+    mosaic.unit = fine.unit;
+    mosaic.colour = std::string_view(fine.layer) == "colour";
+    mosaic.pieces = {{.file = fmt::format("../layers/{}.tif", fine.layer),
+                      .rows = mosaic.frame.rows,
+                      .cols = mosaic.frame.cols,
+                      .cells = factor}};
+    for (const auto& [strip, piece] : pieces) {
+      if (fine.heights && strip->flat) continue;
+      mosaic.pieces.push_back(piece);
+      mosaic.pieces.back().file = strip->id + fine.ending;
+      mosaic.pieces.back().band = fine.band;
     }
+    names.push_back(fmt::format("fine/{}.vrt", fine.layer));
+    io::writeMosaic(place(names.back()), mosaic);
   }
-  return fine;
+  return names;
 }
 
 }  // namespace
@@ -122,11 +148,12 @@ std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
                                      const StripPoints& points, const FuseOptions& options,
                                      const Crs& crs) {
   std::vector<std::string> names = writeWhole(place, map, crs);
+  std::vector<std::pair<const FusedStrip*, io::MosaicPiece>> pieces;
   for (std::size_t i = 0; i < map.strips.size(); ++i) {
     const FusedStrip& strip = map.strips[i];
     if (strip.owned_area <= 0.0) continue;
     const map::GridMap own = fineMap(map, i, *points[i]);
-    const FineLayers fine = fineLayers(map, strip, own, options.match_colours);
+    const FineLayers fine = fineLayers(map, i, own, options.match_colours);
     Files files(place, own.frame, map.layers.origin, crs);
     // A constant per file moves all of its bands, so those above sea level have one of their own.
     if (!map.flat && !strip.flat) {
@@ -140,7 +167,10 @@ std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
                                                {&fine.density, "point density", "1/m2"}});
     files.colours("fine/" + strip.id + "_colour.tif", fine.colour, fine.mask);
     for (std::string& name : files.take()) names.push_back(std::move(name));
+    pieces.emplace_back(&strip, pieceOf(map, strip, own));
   }
+  if (pieces.empty()) return names;
+  for (std::string& name : writeMosaics(place, map, pieces, crs)) names.push_back(std::move(name));
   return names;
 }
 

@@ -18,7 +18,8 @@ using StripPoints = std::vector<const PointStream*>;
 
 /// Writes `layers/NAME.tif` over the whole field and, where strips own cells, in the strips'
 /// cells, `fine/STRIP_heights.tif` (surface, ground), `fine/STRIP.tif` (plant height, Excess Green,
-/// cover, density) and `fine/STRIP_colour.tif`. Heights are left out where the clouds have none.
+/// cover, density) and `fine/STRIP_colour.tif`; then `fine/LAYER.vrt`, the whole field in the
+/// strips' cells, which refers to all of these. Heights are left out where the clouds have none.
 /// Returns their names. Throws OutputError, and UsageError in a build without GDAL.
 std::vector<std::string> writeLayers(const Place& place, const SharedMap& map,
                                      const StripPoints& points, const FuseOptions& options,

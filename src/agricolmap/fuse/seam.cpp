@@ -74,6 +74,34 @@ class Left {
   Raster<float> weight_;
 };
 
+/// What is left, smoothed over about as far as a cell is from the strip: beside its border what is
+/// left right there, so that no step stays; further off the mean of more and more, so that single
+/// leaves are not drawn out.
+class LeftByDistance {
+ public:
+  LeftByDistance(const Left& left, int farthest) {
+    for (int reach = 1; reach < farthest; reach *= 2) add(left, reach);
+    add(left, farthest);
+  }
+  /// `cells`: distance to the strip.
+  float at(int row, int col, double cells) const {
+    const double level = std::log2(std::max(1.0, cells));
+    const auto last = levels_.size() - 1;
+    const auto fine = std::min(static_cast<std::size_t>(level), last);
+    const auto share = static_cast<float>(level - std::floor(level));
+    const float finer = levels_[fine].at(row, col);
+    return finer + share * (levels_[std::min(fine + 1, last)].at(row, col) - finer);
+  }
+
+ private:
+  void add(const Left& left, int reach) {
+    levels_.push_back(left);
+    levels_.back().smooth(reach);
+  }
+
+  std::vector<Left> levels_;  ///< each over twice as far as the one before, but for the last
+};
+
 /// Distance to the nearest cell that the strip saw [m], within a window.
 Raster<float> distanceTo(const StripCells& strip, int first_row, int first_col, int rows, int cols,
                          double cell) {
@@ -103,15 +131,16 @@ void addSeam(const FixedHeights& fixed, const Raster<float>& bias, const StripCe
       if (std::abs(difference) < kMostLeft) left.add(map_row - row, map_col - col, difference);
     }
   }
-  left.smooth(std::max(1, static_cast<int>(std::lround(0.5 * seam / cell))));
+  const LeftByDistance smooth(left, std::max(1, static_cast<int>(std::lround(0.5 * seam / cell))));
   const Raster<float> distance = distanceTo(strip, row, col, rows, cols, cell);
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < cols; ++c) {
-      const double way = static_cast<double>(distance(r, c)) / seam;
+      const auto away = static_cast<double>(distance(r, c));
+      const double way = away / seam;
       if (!(way < 1.0)) continue;
       // From 1 at the strip to 0 with a level end.
       const auto fade = static_cast<float>(0.5 + 0.5 * std::cos(way * std::numbers::pi));
-      sums(row + r, col + c) += fade * left.at(r, c) * fade;
+      sums(row + r, col + c) += fade * smooth.at(r, c, away / cell) * fade;
       weights(row + r, col + c) += fade;
     }
   }

@@ -145,17 +145,15 @@ Raster<float> coverOf(const map::GridMap& map, const Greenness& greenness) {
   return cover;
 }
 
-Layers emptyLayers(const GridFrame& frame, const Eigen::Vector3d& origin) {
-  Layers layers;
-  layers.frame = frame;
-  layers.origin = origin;
+/// The layers that are filled source by source.
+void allocate(Layers& layers) {
+  const GridFrame& frame = layers.frame;
   for (Raster<float>* raster : {&layers.surface, &layers.exg, &layers.cover, &layers.density,
                                 &layers.plane_error, &layers.height_error}) {
     *raster = Raster<float>(frame.rows, frame.cols, kNone);
   }
   layers.colour = Raster<Rgb>(frame.rows, frame.cols);
   layers.date = Raster<std::int32_t>(frame.rows, frame.cols);
-  return layers;
 }
 
 void takeFixed(const FixedHeights& fixed, std::int32_t date, const SharedMap& map, Layers& layers) {
@@ -252,16 +250,27 @@ Raster<float> surfaceOf(const map::GridMap& map) {
   return surface;
 }
 
-void composeLayers(const FixedHeights& fixed, std::int32_t fixed_date, bool match_colours,
-                   SharedMap& map) {
+/// What the fixed cloud shows, and what is known of it.
+struct Drone {
+  map::GridMap map;
+  Raster<float> ground;
+  Raster<float> cover;
+
+  FixedHeights heights() const { return {map, ground, cover}; }
+};
+
+/// `drone` is given up as soon as the layers have it: it is half as large as they are.
+void composeLayers(Drone drone, std::int32_t fixed_date, bool match_colours, SharedMap& map) {
   std::vector<Claim> claims;
   for (const FusedStrip& strip : map.strips) {
     claims.push_back({&strip.cells, strip.code, strip.date,
                       std::hypot(strip.errors.plane, strip.errors.height)});
   }
   Layers& layers = map.layers;
-  layers.source = ownersOf(fixed.map, claims);
-  takeFixed(fixed, fixed_date, map, layers);
+  layers.source = ownersOf(drone.map, claims);
+  allocate(layers);
+  takeFixed(drone.heights(), fixed_date, map, layers);
+  drone = {};
   for (FusedStrip& strip : map.strips) takeStrip(strip, match_colours, layers);
   layers.ground = map::soilGround(layers.frame, layers.surface, layers.cover);
   layers.plant_height = layers.surface;
@@ -285,30 +294,30 @@ SharedMap shareMap(const PointStream& fixed, std::int32_t fixed_date,
   SharedMap map;
   step("extents");
   map.lattice = latticeOf(fixed, inputs, options, map.warnings);
-  map.layers = emptyLayers(map.lattice.frame, origin);
+  map.layers.frame = map.lattice.frame;
+  map.layers.origin = origin;
 
   step("fixed cloud");
-  map::GridMap drone = surfaceMap(fixed, Eigen::Vector3d::Zero(), map.lattice.frame);
-  fillBetween(drone);
-  map.fixed_greenness = greennessOf(drone);
-  map.flat = !map::hasRelief(drone);
+  Drone drone{surfaceMap(fixed, Eigen::Vector3d::Zero(), map.lattice.frame), {}, {}};
+  fillBetween(drone.map);
+  map.fixed_greenness = greennessOf(drone.map);
+  map.flat = !map::hasRelief(drone.map);
 
   step("strips");
   takeStrips(inputs, origin, options, map);
   adjust(inputs, origin, options, map);
-  compareWithFixed(drone, fixed_date, map);
+  compareWithFixed(drone.map, fixed_date, map);
 
   step("heights");
-  const Raster<float> cover = coverOf(drone, map.fixed_greenness);
-  const Raster<float> ground = map::soilGround(map.lattice.frame, surfaceOf(drone), cover);
-  const FixedHeights heights{drone, ground, cover};
+  drone.cover = coverOf(drone.map, map.fixed_greenness);
+  drone.ground = map::soilGround(map.lattice.frame, surfaceOf(drone.map), drone.cover);
   if (options.correct_heights && !map.flat) {
-    map.bias = heightBiasOf(heights, measuredOf(inputs, map.strips));
+    map.bias = heightBiasOf(drone.heights(), measuredOf(inputs, map.strips));
   }
-  map.correction = heightCorrection(heights, map.bias, raisedOf(map), options.seam);
+  map.correction = heightCorrection(drone.heights(), map.bias, raisedOf(map), options.seam);
 
   step("layers");
-  composeLayers(heights, fixed_date, options.match_colours, map);
+  composeLayers(std::move(drone), fixed_date, options.match_colours, map);
   return map;
 }
 

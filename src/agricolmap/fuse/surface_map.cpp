@@ -54,6 +54,12 @@ struct Sums {
   }
 };
 
+/// What is summed of a cell beside its height and its Excess Green.
+struct ColourSums {
+  std::array<float, 3> colour{};
+  float points = 0.0F;
+};
+
 /// Index of the cell that a point of the frame lies in.
 class CellFinder {
  public:
@@ -98,6 +104,23 @@ void setCell(map::GridMap& map, std::size_t i, const Sums& sums, float weight) {
   ++map.filled;
 }
 
+/// Where the surface of each cell lies, at most; `weight` becomes the number of its points.
+Raster<float> topsOf(const PointStream& cloud, const CellFinder& cellOf, Raster<float>& weight) {
+  Raster<Highest> highest(weight.rows(), weight.cols());
+  cloud.pass([&](const PointBatch& batch) {
+    for (const Eigen::Vector3f& local : batch.xyz) {
+      const Eigen::Vector3f point = cellOf.moved(local);
+      if (const auto cell = cellOf(point)) highest[*cell].take(point.z());
+    }
+  });
+  Raster<float> tops(weight.rows(), weight.cols());
+  for (std::size_t i = 0; i < tops.size(); ++i) {
+    tops[i] = highest[i].top();
+    weight[i] = static_cast<float>(highest[i].points);
+  }
+  return tops;
+}
+
 }  // namespace
 
 double cellFor(double spacing) {
@@ -116,33 +139,31 @@ double cellFor(double spacing) {
 map::GridMap surfaceMap(const PointStream& cloud, const Eigen::Vector3d& shift,
                         const GridFrame& frame) {
   const CellFinder cellOf(frame, shift);
-  Raster<Highest> highest(frame.rows, frame.cols);
-  cloud.pass([&](const PointBatch& batch) {
-    for (const Eigen::Vector3f& local : batch.xyz) {
-      const Eigen::Vector3f point = cellOf.moved(local);
-      if (const auto cell = cellOf(point)) highest[*cell].take(point.z());
-    }
-  });
-  Raster<Sums> sums(frame.rows, frame.cols);
+  // Sums stand where the means will: of a hectare each further raster is 160 MB.
+  map::GridMap map = emptyMap(frame);
+  const Raster<float> tops = topsOf(cloud, cellOf, map.weight);
+  Raster<ColourSums> sums(frame.rows, frame.cols);
   cloud.pass([&](const PointBatch& batch) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const Eigen::Vector3f point = cellOf.moved(batch.xyz[i]);
       const auto cell = cellOf(point);
       if (!cell) continue;
-      const float below = highest[*cell].top() - point.z();
+      const float below = tops[*cell] - point.z();
       if (!(below >= 0.0F && below <= static_cast<float>(kSkin))) continue;
-      Sums& sum = sums[*cell];
+      ColourSums& sum = sums[*cell];
       sum.points += 1.0F;
-      sum.height += point.z();
+      map.height[*cell] += point.z();
       if (batch.rgb.empty()) continue;
       const Rgb colour = batch.rgb[i];
-      sum.exg += map::excessGreen(colour, map::ExgKind::kChromatic);
-      sum.add(colour);
+      map.exg[*cell] += map::excessGreen(colour, map::ExgKind::kChromatic);
+      sum.colour[0] += static_cast<float>(colour.r);
+      sum.colour[1] += static_cast<float>(colour.g);
+      sum.colour[2] += static_cast<float>(colour.b);
     }
   });
-  map::GridMap map = emptyMap(frame);
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (sums[i].points > 0.0F) setCell(map, i, sums[i], static_cast<float>(highest[i].points));
+    const auto& [colour, points] = sums[i];
+    if (points > 0.0F) setCell(map, i, {map.height[i], map.exg[i], colour, points}, map.weight[i]);
   }
   return map;
 }

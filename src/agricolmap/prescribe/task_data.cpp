@@ -6,35 +6,13 @@
 #include <cmath>
 
 #include "agricolmap/core/error.hpp"
+#include "agricolmap/core/xml_text.hpp"
 
 namespace agricolmap::prescribe {
 namespace {
 
 /// The zone that a grid of values takes its product and unit from.
 int templateZone(const Plan& plan) { return static_cast<int>(plan.classes.size()) + 1; }
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
-}
 
 std::string nameOf(const std::string& text, const char* what) {
   const auto letters = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
@@ -44,7 +22,7 @@ std::string nameOf(const std::string& text, const char* what) {
     throw UsageError(fmt::format("'{}' is too long: a task file has {} characters for the {}", text,
                                  kLongestName, what));
   }
-  return escaped(text);
+  return xmlText(text);
 }
 
 std::string zoneXml(const Plan& plan, int code, const std::string& name, int colour, int value) {
