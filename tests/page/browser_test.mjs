@@ -165,7 +165,7 @@ test("a rejection names cause and remedy, and offers no error to rely on", (chro
 
 test("without pictures it says so, and a name that means harm stays a name", async (chromium, { hostile }) =>
   on(chromium, hostile.url, {}, async (page) => {
-    assert.match(await text(page, "#map"), /--no-pictures/);
+    assert.match(await text(page, "#map"), /run without pictures/);
     assert.ok((await text(page, ".subject")).includes("<img src=x onerror="));
     assert.equal(await page.evaluate("document.images.length"), 0);
     assert.ok(statSync(hostile.file).size < 2e5);

@@ -242,15 +242,41 @@ test("change: a place says what it was and is, a square is found in both", (chro
     assert.match(await text(page, "#numbers .said"), /cm: .*% of the cells/);
   }));
 
-for (const kind of ["facts", "change"]) {
+test("change: plots are listed, drawn, shaded by what changed, and found in both", (chromium, { plots }) =>
+  on(chromium, `file://${plots}/change.html`, {}, async (page) => {
+    const changes = await changing(page);
+    assert.match(await text(page, "#map"), /Plot by plot/);
+    const table = await lines(page);
+    assert.equal(table.length, 2);
+    const [, ...rows] = csv(`${plots}/plots.csv`);
+    const [name, , mean] = rows.find(([id]) => id === "B");
+    const shown = table.map((line) => line.split(/\s*\t/)).find(([first]) => first === name);
+    assert.ok(shown[1].startsWith(`${mean > 0 ? "+" : ""}${(100 * mean).toFixed(1)}`), `${shown[1]} ${mean}`);
+    await changes("line", () => chooseLine(page, 0));
+    assert.match(await card(page), /^Plot .*\nSurface\n[+\u2212]/);
+    assert.match(await card(page), /Plants' height\n\+[\d.]+\u00a0cm \([\d.]+ to [\d.]+\)\n/);
+    await changes("shade", () => list(page, "0"));
+    assert.match(await text(page, "#map"), /Plots: surface[^]*no more than its errors/);
+    await changes("let go", () => page.evaluate(`[...document.querySelectorAll(".card button")].at(-1).click()`));
+    const at = await page.middle(".map canvas");
+    await changes("click", () => page.clickAt([at[0] + 80, at[1] + 60]));
+    await page.until(`document.querySelectorAll(".card h3").length === 2`);
+    assert.match(await card(page), /^Plot [^]*\nAt x [\d.]+, y /);
+    assert.equal(await page.evaluate(`document.querySelectorAll(".lines tr.chosen").length`), 1);
+    await list(page, "grid");
+    assert.match(await text(page, ".listing"), /Squares \(\d+\)/);
+  }));
+
+for (const [kind, sort] of [["facts", "facts"], ["change", "change"], ["plots", "change"]]) {
   for (const [name, options] of Object.entries({
     light: {}, dark: { dark: true }, phone: { phone: true, width: 390, height: 844 }, print: { print: true, width: 800 },
   })) {
     test(`${kind}, ${name}: readable, labelled, within the screen`, (chromium, pages) =>
-      on(chromium, `file://${pages[kind]}/${kind}.html`, options, async (page) => {
+      on(chromium, `file://${pages[kind]}/${sort}.html`, options, async (page) => {
         await ready(page);
         await settled();
         if (name !== "print") await chooseLine(page, 1);
+        if (kind === "plots") await list(page, "0");
         assert.deepEqual(await page.evaluate(`(${contrastsOf})(4.5)`), []);
         assert.deepEqual(await namelessOf(page), []);
         const [width, inner] = await page.evaluate(`[document.documentElement.scrollWidth, innerWidth]`);
@@ -305,10 +331,13 @@ function largePage(from, to) {
 
 const map = mapOf("june", "0.5");
 const later = mapOf("august", "0.9");
-const pages = { facts: `${folder}/facts`, bare: `${folder}/bare`, change: `${folder}/change`, large: `${folder}/large` };
+const pages = { facts: `${folder}/facts`, bare: `${folder}/bare`, change: `${folder}/change`,
+  plots: `${folder}/plots`, large: `${folder}/large` };
 run("facts", map, "-o", pages.bare, "--no-pictures");
 const [, first] = csv(`${pages.bare}/grid.csv`);
-run("facts", map, "-o", pages.facts, "--plots", plotsAt([Number(first[1]) + 2, Number(first[2]) + 2]));
+const plots = plotsAt([Number(first[1]) + 2, Number(first[2]) + 2]);
+run("facts", map, "-o", pages.facts, "--plots", plots);
 run("diff", map, later, "-o", pages.change, "--frame-error", "0.01", "0.01");
+run("diff", map, later, "-o", pages.plots, "--frame-error", "0.01", "0.01", "--plots", plots, "--grid", "2");
 largePage(pages.facts, pages.large);
 await runAll(tests, new Chromium(program), pages);

@@ -123,7 +123,7 @@ inline pipeline::Registration testRegistration(const TestStrip& strip = {}) {
   addMatches(result, strip, centre);
   addEvidence(result, strip, centre);
   result.verdict = {verdict::Status::kAccepted,
-                    {"the peak is 2.40 times the highest other one",
+                    {"it scores 2.40 times as high as the next best place",
                      "4 of 5 blocks, placed alone, agree with the whole"},
                     0.98};
   return result;

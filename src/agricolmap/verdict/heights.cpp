@@ -54,7 +54,7 @@ HeightsVerdict judgeHeights(const refine::VerticalResult& heights,
 }
 
 std::string describe(const HeightsVerdict& verdict) {
-  std::string deviation = fmt::format("good to {:.0f} cm", 100.0 * verdict.deviation);
+  std::string deviation = fmt::format("heights may be off by {:.0f} cm", 100.0 * verdict.deviation);
   switch (verdict.limit) {
     case HeightsLimit::kFlat:
       return "a cloud has none";

@@ -20,6 +20,9 @@ constexpr double kFarthestDrive = 40.0;  // [m], more is no advice
 constexpr double kNarrow = 1.2;          // strip of two rows [m]
 constexpr double kGoodGuess = 1.0;       // [m]
 constexpr double kRightPlace = 0.8;
+constexpr double kBesideTheMap = 0.5;  // share of the strip that a guess should lay on the map
+constexpr double kAtTheEdge = 0.95;    // of what the guess allows
+constexpr double kNoPlace = 0.2;       // of so small a probability the strip may be of elsewhere
 
 /// Factor by which the strip's area is too small for a clear peak; 1: it is not.
 double areaWanted(const Evidence& evidence) {
@@ -55,13 +58,55 @@ void adviseLength(const Evidence& evidence, std::vector<std::string>& remedies) 
 void adviseGuess(const PriorUncertainty& guess, std::vector<std::string>& remedies) {
   if (guess.anywhere()) {
     remedies.emplace_back(
-        "give an initial guess and how good it is: anywhere in the map, there is more to confuse");
+        "say about where the strip lies (a GPS fix of one end will do) and how good that is: "
+        "without "
+        "it every place of the map competes");
   } else if (guess.translation > kGoodGuess) {
-    remedies.push_back(fmt::format(
-        "give a narrower guess than {:.3g} m, {:.3g} deg and {:.0f} % of scale, if it is "
-        "that good: fewer places are left to confuse",
-        guess.translation, guess.heading_deg, 100.0 * guess.scale));
+    remedies.push_back(
+        fmt::format("if the guess is better than {:.3g} m, {:.3g} deg and {:.0f} % of scale, say "
+                    "so: fewer places "
+                    "compete then",
+                    guess.translation, guess.heading_deg, 100.0 * guess.scale));
   }
+}
+
+/// Where the answer is as far from the guess as it may be: the right one may be farther.
+bool atTheEdge(const Finding& finding, const SearchSpace& space) {
+  const Eigen::Vector2d moved = finding.pose * space.centre - space.centre;
+  const HorizontalParts parts =
+      splitHorizontal(space.scale_axes.transpose() * finding.pose.linear() * space.scale_axes);
+  const PriorUncertainty& guess = space.uncertainty;
+  return moved.norm() > kAtTheEdge * guess.translation ||
+         (guess.heading_deg < 180.0 &&
+          degrees(std::abs(parts.yaw)) > kAtTheEdge * guess.heading_deg);
+}
+
+/// What is wrong before anything is compared: the guess, or the files. True where one is told.
+bool adviseInputs(const Verdict& verdict, const Finding& finding, const SearchSpace& space,
+                  std::vector<std::string>& remedies) {
+  const std::size_t before = remedies.size();
+  const PriorUncertainty& guess = space.uncertainty;
+  if (verdict.place_probability >= kRightPlace) return false;
+  if (finding.guessed_overlap < kBesideTheMap) {
+    remedies.push_back(fmt::format(
+        "check the guess, and that the fixed map shows the place: the guess lays {:.0f} % of the "
+        "strip on it",
+        100.0 * finding.guessed_overlap));
+  }
+  if (verdict.status == Status::kRejected && atTheEdge(finding, space)) {
+    remedies.push_back(
+        fmt::format("if the guess may be wrong by more than {:.3g} m and {:.3g} deg, say so: the "
+                    "best answer is "
+                    "as far from it as that allows",
+                    guess.translation, guess.heading_deg));
+  }
+  const bool told = remedies.size() > before;
+  if (verdict.status == Status::kRejected && verdict.place_probability < kNoPlace) {
+    remedies.emplace_back(
+        "check that both files are of the same field and of days not far apart: the strip fits "
+        "nowhere better than by chance");
+  }
+  return told;
 }
 
 bool beyond(double value, double limit) { return !(value <= limit); }
@@ -98,8 +143,13 @@ std::vector<std::string> remediesFor(const Verdict& verdict, const Finding& find
   const bool beyond_limits = !remedies.empty();  // where no part of it can be right
   const Evidence& evidence = finding.evidence;
   if (verdict.status == Status::kAmbiguous || verdict.place_probability < kRightPlace) {
-    adviseLength(evidence, remedies);
-    adviseGuess(space.uncertainty, remedies);
+    const bool inputs = !beyond_limits && adviseInputs(verdict, finding, space, remedies);
+    // Where the right place was not looked at, a longer strip or a narrower guess would miss it,
+    // too.
+    if (!inputs) {
+      adviseLength(evidence, remedies);
+      adviseGuess(space.uncertainty, remedies);
+    }
   }
   if (evidence.parts.apart() && !beyond_limits) {
     remedies.emplace_back("register the strip in parts, or mend its odometry where they join");

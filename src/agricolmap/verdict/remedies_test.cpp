@@ -59,11 +59,11 @@ TEST(Remedies, OneRowWantsASecondPass) {
 
 TEST(Remedies, WhatTheGuessLeavesOpenIsNamed) {
   SearchSpace space;
-  EXPECT_THAT(adviceFor(unsureFinding(), space), Contains(HasSubstr("narrower guess than 5 m")));
+  EXPECT_THAT(adviceFor(unsureFinding(), space), Contains(HasSubstr("better than 5 m")));
   space.uncertainty.translation = 0.5;
   EXPECT_THAT(adviceFor(unsureFinding(), space), Each(Not(HasSubstr("guess"))));
   space.uncertainty = PriorUncertainty::none();
-  EXPECT_THAT(adviceFor(unsureFinding(), space), Contains(HasSubstr("give an initial guess")));
+  EXPECT_THAT(adviceFor(unsureFinding(), space), Contains(HasSubstr("about where the strip lies")));
 }
 
 TEST(Remedies, AnswersBeyondTheGuessNameTheLimit) {
@@ -74,6 +74,37 @@ TEST(Remedies, AnswersBeyondTheGuessNameTheLimit) {
   EXPECT_THAT(adviceFor(finding), Contains(HasSubstr("error of heading")));
   finding.overlap = 0.1;
   EXPECT_THAT(adviceFor(finding), Contains(HasSubstr("shows the whole strip")));
+}
+
+TEST(Remedies, AGuessBesideTheMapIsToldBeforeAllElse) {
+  Finding finding = unsureFinding();
+  finding.guessed_overlap = 0.08;
+  const auto advice = adviceFor(finding);
+  EXPECT_THAT(advice.front(), HasSubstr("lays 8 % of the strip on it"));
+  // A narrower one would only be more wrong.
+  EXPECT_THAT(advice, Each(Not(HasSubstr("better than"))));
+}
+
+TEST(Remedies, AnAnswerAsFarOffAsAllowedAsksForMore) {
+  Finding finding = unsureFinding();
+  finding.pose.translation() = Eigen::Vector2d(4.9, 0.0);
+  EXPECT_THAT(adviceFor(finding).front(), HasSubstr("wrong by more than 5 m and 11.5 deg"));
+  finding.pose = Eigen::Rotation2Dd(0.197);  // 11.3 degrees
+  EXPECT_THAT(adviceFor(finding).front(), HasSubstr("wrong by more than"));
+  finding.pose = Eigen::Rotation2Dd(0.1);
+  EXPECT_THAT(adviceFor(finding), Each(Not(HasSubstr("wrong by more than"))));
+  SearchSpace nowhere;
+  nowhere.uncertainty = PriorUncertainty::none();
+  finding.pose = Eigen::Rotation2Dd(3.1);
+  EXPECT_THAT(adviceFor(finding, nowhere), Each(Not(HasSubstr("wrong by more than"))));
+}
+
+TEST(Remedies, WhatFitsNowhereMayBeOfElsewhere) {
+  Verdict verdict;
+  verdict.place_probability = 0.1;
+  EXPECT_THAT(remediesFor(verdict, unsureFinding(), {}, {}),
+              Contains(HasSubstr("of the same field")));
+  EXPECT_THAT(adviceFor(unsureFinding()), Each(Not(HasSubstr("of the same field"))));
 }
 
 TEST(Remedies, PartsOfWhatCannotBeRightAreNoAdvice) {

@@ -78,6 +78,7 @@ constexpr double kWeakDecoy = 1.4;
 constexpr double kMirroredDecoy = 0.6;
 constexpr double kWeakAgreement = 0.55;
 constexpr double kLargeError = 0.03;  // [m]
+constexpr double kLikelyPlace = 0.5;  // of a place that is none an error means nothing
 
 /// What no evidence can outweigh.
 std::vector<std::string> contradictions(const Finding& finding, const SearchSpace& space,
@@ -121,37 +122,43 @@ double expectedError(const Finding& finding) {
   return std::hypot(finding.uncertainty->expected_rms, finding.uncertainty->local_rms);
 }
 
+const char* asHigh(double ratio) { return ratio > 1.0 ? "almost as high" : "as high or higher"; }
+
 /// What weakens a registration that is not likely enough.
-std::vector<std::string> doubts(const Finding& finding, double probability,
+std::vector<std::string> doubts(const Finding& finding, double probability, double place,
                                 const VerdictOptions& options) {
   const Evidence& evidence = finding.evidence;
   std::vector<std::string> against;
   if (!evidence.parts.displaced.empty()) {
-    against.push_back(describe(evidence.parts) + "");
+    against.push_back(describe(evidence.parts));
   }
   if (evidence.uniqueness < std::max(kWeakUniqueness, options.min_uniqueness)) {
-    against.push_back(
-        fmt::format("another place fits almost as well: the peak is {:.2f} times the "
-                    "highest other one",
-                    evidence.uniqueness));
+    against.push_back(fmt::format("another place scores {}: this one has {:.2f} times its score",
+                                  asHigh(evidence.uniqueness), evidence.uniqueness));
   }
   if (!evidence.decoys.empty() && evidence.decoyRatio() < kWeakDecoy) {
     against.push_back(
-        fmt::format("a mirrored copy of the moving map, which fits nowhere, fits almost as well: "
-                    "the peak is {:.2f} times its highest one",
-                    evidence.decoyRatio()));
+        fmt::format("a mirrored copy of the strip, which belongs nowhere, scores {}: the strip has "
+                    "{:.2f} times "
+                    "its score",
+                    asHigh(evidence.decoyRatio()), evidence.decoyRatio()));
   }
   if (evidence.agreement() < kWeakAgreement) {
     against.push_back(fmt::format("only {} of {} blocks, placed alone, agree with the whole",
                                   evidence.agreeing, evidence.blocks.size()));
   }
   const double error = expectedError(finding);
-  if (!(error < kLargeError)) {
+  if (!(error < kLargeError) && (place >= kLikelyPlace || !std::isfinite(error))) {
+    // Of squares, which add up.
+    const bool slipped = 2.0 * finding.slip_rms * finding.slip_rms > error * error;
     against.push_back(
         std::isfinite(error)
-            ? fmt::format("an error of {:.1f} cm RMS is to be expected: so far do the "
-                          "strip's blocks, and plants and soil, pull apart",
-                          100 * error)
+            ? fmt::format("an error of {:.1f} cm RMS must be expected: {}", 100 * error,
+                          slipped
+                              ? "it is not told well enough where the strip slipped, or whose "
+                                "the points are where its parts lie over each other"
+                              : "by so much the strip's blocks, or its plants and soil, contradict "
+                                "one another")
             : std::string("too few blocks of the strip can be compared"));
   }
   if (probability < options.min_probability) {
@@ -166,9 +173,9 @@ std::vector<std::string> doubts(const Finding& finding, double probability,
 std::vector<std::string> support(const Finding& finding, double plane) {
   const Evidence& evidence = finding.evidence;
   std::string peak =
-      fmt::format("the peak is {:.2f} times the highest other one", evidence.uniqueness);
+      fmt::format("it scores {:.2f} times as high as the next best place", evidence.uniqueness);
   if (!evidence.decoys.empty()) {
-    peak += fmt::format(", and {:.2f} times that of a mirrored copy, which fits nowhere",
+    peak += fmt::format(", and {:.2f} times as high as a mirrored copy, which belongs nowhere",
                         evidence.decoyRatio());
   }
   std::vector<std::string> reasons = {
@@ -183,14 +190,14 @@ std::vector<std::string> support(const Finding& finding, double plane) {
   }
   if (finding.uncertainty) {
     const PoseUncertainty& error = *finding.uncertainty;
+    const bool height = std::isfinite(error.height_deviation) && !finding.heights.limited();
+    reasons.push_back(fmt::format(
+        "expected error {:.1f} cm RMS in the plane{}", 100 * error.expected_rms,
+        height ? fmt::format(" and {:.1f} cm in height", 100 * error.height_deviation) : ""));
     reasons.push_back(
-        fmt::format("expected error {:.1f} cm RMS in the plane ({:.1f} cm of it systematic){}",
-                    100 * error.expected_rms, 100 * error.systematic_rms,
-                    std::isfinite(error.height_deviation)
-                        ? fmt::format(" and {:.1f} cm in height", 100 * error.height_deviation)
-                        : std::string()));
-    reasons.push_back(fmt::format("{:.1f} cm of local deformation remain that no affine undoes",
-                                  100 * error.local_rms));
+        fmt::format("parts of the strip are bent by another {:.1f} cm RMS, which no single "
+                    "transformation takes out",
+                    100 * error.local_rms));
   }
   return reasons;
 }
@@ -237,7 +244,8 @@ Verdict judge(const Finding& finding, const SearchSpace& space, const VerdictOpt
             finding.heights};
   }
   if (apart || plane < options.min_probability || evidence.uniqueness < options.min_uniqueness) {
-    return {Status::kRejected, doubts(finding, plane, options), plane, place, finding.heights};
+    return {Status::kRejected, doubts(finding, plane, place, options), plane, place,
+            finding.heights};
   }
   return {Status::kAccepted, support(finding, plane), plane, place, finding.heights};
 }

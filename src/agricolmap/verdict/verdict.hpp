@@ -48,7 +48,10 @@ struct Finding {
   /// What the guess is held against, levelled moving → levelled fixed: the pose, and of a strip
   /// that slipped that of its longest part.
   Eigen::Affine2d pose = Eigen::Affine2d::Identity();
+  /// Share of the moving map's cells that the guess lays on what the fixed map sees; 1 without one.
+  double guessed_overlap = 1.0;
   std::vector<double> rivals;  ///< significances of the other distinct placements
+  double slip_rms = 0.0;       ///< part of the expected error: where slips lie, and overlaps [m]
 };
 
 /// What the probability of a finding rests on.

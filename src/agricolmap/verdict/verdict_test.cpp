@@ -51,11 +51,29 @@ TEST(Verdict, AcceptsWhatEverythingSpeaksFor) {
   EXPECT_GE(verdict.reasons.size(), 3U);
 }
 
+TEST(Verdict, SaysWhetherASlipOrItsBlocksMakeTheError) {
+  Finding finding = clearFinding();
+  finding.uncertainty->expected_rms = 0.09;
+  const auto reasonsOf = [&] {
+    std::string all;
+    for (const std::string& reason : judge(finding, {}, {}).reasons) all += reason + "\n";
+    return all;
+  };
+  EXPECT_THAT(reasonsOf(), HasSubstr("contradict one another"));
+  finding.slip_rms = 0.085;
+  EXPECT_THAT(reasonsOf(), HasSubstr("where the strip slipped"));
+  EXPECT_THAT(reasonsOf(), ::testing::Not(HasSubstr("contradict one another")));
+  // Of what is hardly a place at all an error means nothing.
+  finding = chanceFinding();
+  finding.uncertainty->expected_rms = 0.09;
+  EXPECT_THAT(reasonsOf(), ::testing::Not(HasSubstr("must be expected")));
+}
+
 TEST(Verdict, ChanceIsRejectedThoughItsRivalsAreEqual) {
   const Verdict verdict = judge(chanceFinding(), {}, {});
   EXPECT_EQ(verdict.status, Status::kRejected);
   EXPECT_LT(verdict.plane_probability, 0.05);
-  EXPECT_THAT(verdict.reasons.front(), HasSubstr("another place fits almost as well"));
+  EXPECT_THAT(verdict.reasons.front(), HasSubstr("another place scores a"));
 }
 
 TEST(Verdict, AFileThatIsMirroredIsNamedFirst) {
@@ -140,7 +158,8 @@ TEST(Verdict, LimitedHeightsAreSaidFirstAndRefuseOnlyWhereTheyAreRequired) {
   EXPECT_EQ(limited.status, Status::kAccepted);
   EXPECT_EQ(limited.plane_probability, measured.plane_probability);
   EXPECT_EQ(headline(limited),
-            "accepted in the plane, heights limited: no ground is seen under the plants, good to 8 "
+            "accepted in the plane, heights limited: no ground is seen under the plants, heights "
+            "may be off by 8 "
             "cm");
   requireHeights(limited);
   EXPECT_EQ(limited.status, Status::kRejected);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "agricolmap/core/angles.hpp"
+#include "agricolmap/report/gis/qgis_style.hpp"
 
 namespace agricolmap::report {
 
@@ -197,6 +198,7 @@ std::vector<io::VectorLayer> factsLayers(const PlacedFacts& placed) {
       stretchesLayer(placed, "uncountable", &crop::RowPlants::touching),
       gridLayer(placed)};
   if (!placed.plots.empty()) layers.push_back(plotsLayer(placed));
+  for (VectorLayer& layer : layers) layer.qgis_style = qgisMarks(layer.name);
   return layers;
 }
 

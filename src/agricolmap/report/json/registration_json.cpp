@@ -9,36 +9,13 @@
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/pipeline/followed.hpp"
 #include "agricolmap/report/counts.hpp"
+#include "agricolmap/report/json/json_values.hpp"
 #include "agricolmap/report/json/utf8.hpp"
 
 namespace agricolmap::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Null stands for numbers that JSON lacks.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-template <typename Derived>
-Json vectorJson(const Eigen::MatrixBase<Derived>& vector) {
-  Json json = Json::array();
-  for (Eigen::Index i = 0; i < vector.size(); ++i) json.push_back(number(vector(i)));
-  return json;
-}
-
-/// Row-major, nested.
-template <typename Derived>
-Json matrixJson(const Eigen::MatrixBase<Derived>& matrix) {
-  Json json = Json::array();
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) json.push_back(vectorJson(matrix.row(r)));
-  return json;
-}
-
-Json stringsJson(const std::vector<std::string>& strings) {
-  Json json = Json::array();
-  for (const std::string& text : strings) json.push_back(validUtf8(text));
-  return json;
-}
 
 /// Of a cloud's file, before its coordinates were brought into the system of the report.
 Json fileCrsJson(const std::optional<Crs>& crs) {
@@ -152,6 +129,8 @@ Json residualsJson(const pipeline::Registration& registration) {
                       {"ground_seen", number(vertical.ground_seen)},
                       {"lift_m", number(vertical.lift)},
                       {"blur_m", number(vertical.blur)},
+                      {"relief_m", number(vertical.measured_scale.relief)},
+                      {"relief_correlation", number(vertical.measured_scale.correlation)},
                       {"canopy_m", number(vertical.canopy)},
                       {"canopy_gain", number(vertical.canopy_gain)}};
   return json;
@@ -202,8 +181,10 @@ Json heightsJson(const pipeline::Registration& registration) {
   json["words"] = describe(heights);
   json["deviation_m"] = number(heights.deviation);
   json["bias_m"] = number(heights.bias);
-  // Growth and what a drone loses of a canopy look the same as another scale.
-  json["vertical_scale"] = "assumed";
+  const refine::VerticalScale& scale = registration.placed->heights.measured_scale;
+  json["vertical_scale"] = scale.measured() ? "measured" : "assumed";
+  json["measured_scale"] = scale.measured() ? number(scale.value) : Json(nullptr);
+  json["scale_deviation"] = scale.measured() ? number(scale.deviation) : Json(nullptr);
   return json;
 }
 

@@ -120,6 +120,12 @@ TEST(RegistrationJson, SaysWhetherHeightsAreLimitedAndWhy) {
   EXPECT_TRUE(heights["limit"].is_null());
   EXPECT_EQ(heights["deviation_m"], 0.014);
   EXPECT_EQ(heights["vertical_scale"], "assumed");
+  EXPECT_TRUE(heights["measured_scale"].is_null());
+  registration.placed->heights.measured_scale = {.value = 0.93, .deviation = 0.01};
+  heights = reportOf(registration)["heights"];
+  EXPECT_EQ(heights["vertical_scale"], "measured");
+  EXPECT_EQ(heights["measured_scale"], 0.93);
+  EXPECT_EQ(heights["scale_deviation"], 0.01);
   registration.verdict.heights = {.limit = verdict::HeightsLimit::kFlat};
   heights = reportOf(registration)["heights"];
   EXPECT_EQ(heights["status"], "limited");

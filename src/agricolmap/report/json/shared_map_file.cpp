@@ -98,6 +98,16 @@ MapSource sourceIn(const JsonReader& json) {
   return source;
 }
 
+StripShare shareIn(const JsonReader& json) {
+  StripShare share;
+  share.code = static_cast<std::uint16_t>(json.at("code").integer());
+  // What no reader needs, who else writes such a file may leave out.
+  if (json.has("moved_m")) share.moved = json.at("moved_m").vector<3>();
+  if (json.has("seen_m2")) share.seen_area = json.at("seen_m2").numberOr(0.0);
+  if (json.has("owned_m2")) share.owned_area = json.at("owned_m2").numberOr(0.0);
+  return share;
+}
+
 }  // namespace
 
 std::string sharedMapJson(const fuse::SharedMap& map, const MapFacts& facts,
@@ -170,6 +180,12 @@ StoredMap readSharedMap(const std::filesystem::path& folder) {
     strip.errors.plane = source.at("plane_error_m").number();
     strip.errors.height = source.at("height_error_m").number();
     stored.strips.push_back(std::move(strip));
+    stored.shares.push_back(shareIn(source));
+  }
+  if (reader.has("warnings")) {
+    for (const JsonReader& line : reader.at("warnings").items()) {
+      stored.warnings.push_back(line.text());
+    }
   }
   return stored;
 }

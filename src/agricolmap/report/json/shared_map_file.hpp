@@ -40,6 +40,14 @@ struct MapFacts {
 std::string sharedMapJson(const fuse::SharedMap& map, const MapFacts& facts,
                           const fuse::FuseOptions& options);
 
+/// What a strip has in a shared map.
+struct StripShare {
+  std::uint16_t code = fuse::kNoSource;             ///< in the layer `source`
+  Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< by the adjustment [m]
+  double seen_area = 0.0;                           ///< [m²]
+  double owned_area = 0.0;                          ///< [m²]
+};
+
 /// A shared map as it lies on the disk.
 struct StoredMap {
   std::filesystem::path folder;
@@ -47,6 +55,8 @@ struct StoredMap {
   bool flat = false;  ///< its clouds have no heights, and it no layers of them
   MapSource fixed;
   std::vector<MapSource> strips;
+  std::vector<StripShare> shares;  ///< as `strips`
+  std::vector<std::string> warnings;
 
   /// layers/NAME.tif; nothing where the map has no such layer.
   std::optional<std::filesystem::path> layer(const std::string& name) const;

@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kBins = 48;
+constexpr std::size_t kMostParts = 12'000;  // that a browser draws at once
 
 Json distributionJson(const change::Distribution& cells) {
   Json sure = Json::array(), unsure = Json::array();
@@ -26,12 +27,24 @@ Json distributionJson(const change::Distribution& cells) {
 
 }  // namespace
 
-Json changeScene(const ChangeGround& ground) {
-  const io::VectorLayer squares = changeSquares(ground);
-  Json layers = {{"squares", packedLayer(squares, ground.origin, {squares.features.size(), {}})}};
-  return {{"layers", std::move(layers)},
-          {"origin_m", {ground.origin.x(), ground.origin.y()}},
-          {"cells", distributionJson(change::distributionOf(ground.heights, kBins))}};
+Json changeScene(const ChangeGround& ground, const std::vector<io::VectorLayer>& zones) {
+  Json layers = Json::object();
+  const auto add = [&](const io::VectorLayer& layer) {
+    layers[layer.name] = packedLayer(layer, ground.origin, {layer.features.size(), {}});
+  };
+  bool squares = false;
+  for (const io::VectorLayer& layer : zones) {
+    if (layer.features.size() > kMostParts) continue;
+    add(layer);
+    squares = squares || layer.name == "grid";
+  }
+  if (!squares) add(changeSquares(ground));
+  Json scene = {{"layers", std::move(layers)},
+                {"origin_m", {ground.origin.x(), ground.origin.y()}}};
+  if (ground.surface.known()) {
+    scene["cells"] = distributionJson(change::distributionOf(ground.heights, kBins));
+  }
+  return scene;
 }
 
 std::string changePage(Json change_json, Json scene, const ChangePageInfo& info) {

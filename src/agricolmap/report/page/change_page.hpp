@@ -5,33 +5,32 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/change/height_change.hpp"
+#include "agricolmap/change/comparison.hpp"
 #include "agricolmap/core/raster.hpp"
+#include "agricolmap/io/vector/vector_layer.hpp"
 #include "agricolmap/report/page/scene_colours.hpp"
 
 namespace agricolmap::report {
 
-/// A layer of both maps on the grid of the change; empty where one has none.
-struct LayerTimes {
-  Raster<float> before;
-  Raster<float> after;
-  bool known() const { return !before.empty() && !after.empty(); }
-};
+using change::LayerTimes;
 
 /// What the page shows; all must outlive the call.
 struct ChangeGround {
   GridFrame frame;  ///< of all rasters, about `origin` [m]
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
   const change::HeightChange& heights;
-  const LayerTimes& surface;       ///< [m]
+  const LayerTimes& surface;       ///< [m]; without it nothing of heights is shown
   const LayerTimes& plant_height;  ///< [m]
   const LayerTimes& cover;
   const ColourMap& colour_before;  ///< in frames of their own about the same origin
   const ColourMap& colour_after;
 };
 
-/// What single squares changed by, and how many cells by how much.
-nlohmann::ordered_json changeScene(const ChangeGround& ground);
+/// What single parts changed by, and how many cells by how much. `zones`: layers `plots` and `grid`
+/// of what was asked for, if any, in file coordinates; without `grid`, or of more squares than a
+/// page can draw, squares of the page's own stand for it.
+nlohmann::ordered_json changeScene(const ChangeGround& ground,
+                                   const std::vector<io::VectorLayer>& zones = {});
 
 /// Adds the layers as pictures, see scene_pictures.hpp, as fine as a page of 8 MB has room for;
 /// nothing in a build without pictures. Where one of the maps has no colours, reliefs stand for

@@ -90,6 +90,53 @@ TEST(ChangePage, HasPicturesOfBothTimesAndOfTheChange) {
   EXPECT_TRUE(plain["fixed"][0]["layers"].contains("after_relief"));
 }
 
+TEST(ChangePage, OfFlatMapsShowsCoversAlone) {
+  TestChange field;
+  for (float& value : field.heights.change) value = kNone;
+  const LayerTimes cover{Raster<float>(60, 80, 0.2F), Raster<float>(60, 80, 0.5F)};
+  const ChangeGround ground{
+      field.frame, {352400.0, 4815300.0}, field.heights, field.none, field.none,
+      cover,       field.unknown,         field.unknown};
+  const io::VectorLayer squares = changeSquares(ground);
+  ASSERT_EQ(squares.features.size(), 20U);
+  EXPECT_TRUE(std::isnan(valueOf(squares, 0, "change_m")));
+  EXPECT_NEAR(valueOf(squares, 0, "cover_change"), 0.3, 1e-6);
+  EXPECT_NEAR(valueOf(squares, 0, "compared_m2"), 0.75 * 0.5, 1e-9);
+  Json scene = changeScene(ground);
+  EXPECT_FALSE(scene.contains("cells"));
+  if (!canDraw()) return;
+  addChangePictures(scene, ground);
+  const Json& layers = scene["maps"]["fixed"][0]["layers"];
+  EXPECT_TRUE(layers.contains("cover_change"));
+  EXPECT_FALSE(layers.contains("change"));
+  EXPECT_FALSE(layers.contains("before_relief"));
+}
+
+TEST(ChangePage, PartsThatWereAskedForStandForItsSquares) {
+  const TestChange field;
+  const auto zones = [](const char* name, std::size_t count) {
+    io::VectorLayer layer{name, io::GeometryKind::kPolygon, {{"id", io::FieldKind::kText}}, {}};
+    const Eigen::Vector2d a(352401.0, 4815301.0);
+    for (std::size_t i = 0; i < count; ++i) {
+      layer.features.push_back(
+          {{a, a + Eigen::Vector2d(1.0, 0.0), a + Eigen::Vector2d(1.0, 1.0)}, {std::string("A")}});
+    }
+    return layer;
+  };
+  const auto layersOf = [&](const std::vector<io::VectorLayer>& given) {
+    return changeScene(field.ground(field.grey), given)["layers"];
+  };
+  const Json plots = layersOf({zones("plots", 2)});
+  EXPECT_EQ(plots["plots"]["count"], 2);
+  EXPECT_TRUE(plots.contains("squares"));
+  const Json both = layersOf({zones("plots", 2), zones("grid", 3)});
+  EXPECT_EQ(both["grid"]["count"], 3);
+  EXPECT_FALSE(both.contains("squares"));
+  const Json many = layersOf({zones("grid", 12'001)});
+  EXPECT_FALSE(many.contains("grid"));
+  EXPECT_EQ(many["squares"]["count"], 15);
+}
+
 TEST(ChangePage, CountsTheCellsAndKeepsNamesAsText) {
   const TestChange field;
   const Json scene = changeScene(field.ground(field.grey));

@@ -131,7 +131,7 @@ Json colourPicture(const char* name, const ColourMap& map, double most_pixels) {
 void addChangePictures(Json& scene, const ChangeGround& ground) {
   const bool coloured = !ground.colour_before.colour.empty() && !ground.colour_after.colour.empty();
   LayerTimes relief;
-  if (!coloured) {
+  if (!coloured && ground.surface.known()) {
     relief = {reliefOf(ground.surface.before, ground.frame.cell),
               reliefOf(ground.surface.after, ground.frame.cell)};
   }
@@ -141,14 +141,18 @@ void addChangePictures(Json& scene, const ChangeGround& ground) {
   const Reach reach{change::reachOf(ground.heights.change)};
   scene["maps"] = picturesWithin(pictureBytesBeside(scene), [&](double most_pixels) {
     const int factor = cellsPerPixel(ground.frame, most_pixels);
-    std::vector<std::string> encoded(values.size() + 1);
+    const bool heights = ground.surface.known();
+    std::vector<std::string> encoded(values.size() + (heights ? 1 : 0));
     parallelFor(encoded.size(), [&](std::size_t i) {
       encoded[i] = i < values.size() ? valuesPng(ground.frame, factor, values[i])
                                      : changePng(ground, factor, reach);
     });
     Json picture = pictureJson(ground.frame, factor);
-    picture["layers"]["change"] = encoded.back();
-    Json scales = {{"change", {-reach.change, reach.change}}};
+    Json scales = Json::object();
+    if (heights) {
+      picture["layers"]["change"] = encoded.back();
+      scales["change"] = {-reach.change, reach.change};
+    }
     for (std::size_t i = 0; i < values.size(); ++i) {
       picture["layers"][values[i].name] = encoded[i];
       scales[values[i].name] = {values[i].low, values[i].high};

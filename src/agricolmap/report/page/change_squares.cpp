@@ -30,7 +30,8 @@ struct Mean {
 
 struct Square {
   Mean change, detection, plants, cover;
-  double rose = 0.0;  ///< cells
+  double compared = 0.0;  ///< cells
+  double rose = 0.0;      ///< cells
   double fell = 0.0;
 };
 
@@ -71,6 +72,7 @@ Raster<Square> sumsOf(const ChangeGround& ground, const Squares& squares) {
       const float change = ground.heights.change[i];
       if (!std::isnan(change)) {
         square.change.add(change);
+        square.compared += 1.0;
         square.detection.add(ground.heights.detection[i]);
         if (ground.heights.significant[i] > 0.0F)
           (change > 0.0F ? square.rose : square.fell) += 1.0;
@@ -79,6 +81,7 @@ Raster<Square> sumsOf(const ChangeGround& ground, const Squares& squares) {
         square.plants.add(ground.plant_height.after[i] - ground.plant_height.before[i]);
       }
       if (ground.cover.known()) square.cover.add(ground.cover.after[i] - ground.cover.before[i]);
+      if (!ground.surface.known()) square.compared = square.cover.count;
     }
   }
   return sums;
@@ -87,14 +90,13 @@ Raster<Square> sumsOf(const ChangeGround& ground, const Squares& squares) {
 VectorLayer emptyLayer(const ChangeGround& ground) {
   VectorLayer layer{"squares",
                     GeometryKind::kPolygon,
-                    {{"id", FieldKind::kInteger},
-                     {"compared_m2", FieldKind::kReal, 2},
-                     {"change_m", FieldKind::kReal, 4},
-                     {"level_m", FieldKind::kReal, 4},
-                     {"rose", FieldKind::kReal, 4},
-                     {"fell", FieldKind::kReal, 4},
-                     {"volume_m3", FieldKind::kReal, 4}},
+                    {{"id", FieldKind::kInteger}, {"compared_m2", FieldKind::kReal, 2}},
                     {}};
+  if (ground.surface.known()) {
+    for (const char* name : {"change_m", "level_m", "rose", "fell", "volume_m3"}) {
+      layer.fields.push_back({name, FieldKind::kReal, 4});
+    }
+  }
   if (ground.plant_height.known()) {
     layer.fields.push_back({"plant_height_change_m", FieldKind::kReal, 4});
   }
@@ -112,14 +114,17 @@ VectorLayer changeSquares(const ChangeGround& ground) {
   for (int r = 0; r < sums.rows(); ++r) {
     for (int c = 0; c < sums.cols(); ++c) {
       const Square& square = sums(r, c);
-      const double cells = square.change.count;
+      const double cells = square.compared;
       if (cells == 0.0) continue;
       const Eigen::Vector2d a = squares.corner + squares.side * Eigen::Vector2d(c, r);
       const Eigen::Vector2d b = a + Eigen::Vector2d::Constant(squares.side);
       VectorFeature feature{{a, {b.x(), a.y()}, b, {a.x(), b.y()}},
-                            {static_cast<std::int64_t>(layer.features.size() + 1), cells * cell,
-                             square.change.value(), square.detection.value(), square.rose / cells,
-                             square.fell / cells, square.change.sum * cell}};
+                            {static_cast<std::int64_t>(layer.features.size() + 1), cells * cell}};
+      if (ground.surface.known()) {
+        feature.values.insert(feature.values.end(),
+                              {square.change.value(), square.detection.value(), square.rose / cells,
+                               square.fell / cells, square.change.sum * cell});
+      }
       if (ground.plant_height.known()) feature.values.emplace_back(square.plants.value());
       if (ground.cover.known()) feature.values.emplace_back(square.cover.value());
       layer.features.push_back(std::move(feature));

@@ -73,8 +73,7 @@ Json stripFacts(const pipeline::Registration& registration) {
           {"direction", vectorJson(direction.normalized())}};
 }
 
-Json rigidFacts(const CloudFacts& fixed, const Cloud& moving,
-                const pipeline::Registration& registration) {
+Json rigidFacts(const CloudOrigins& origins, const pipeline::Registration& registration) {
   if (!registration.transform) return nullptr;
   const Eigen::Affine3d& affine = registration.transform->local_fixed_from_moving;
   const map::Box2& box = registration.maps.moving_box;
@@ -93,7 +92,7 @@ Json rigidFacts(const CloudFacts& fixed, const Cloud& moving,
     off = std::max(off, (affine * point - (rotation * point + shift)).norm());
   }
   const Eigen::Quaterniond quaternion(rotation);
-  const Eigen::Vector3d file_shift = fixed.origin + shift - rotation * moving.origin;
+  const Eigen::Vector3d file_shift = origins.fixed + shift - rotation * origins.moving;
   return {{"quaternion_xyzw", {quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w()}},
           {"local_shift_m", vectorJson(shift)},
           {"file_shift_m", vectorJson(file_shift)},

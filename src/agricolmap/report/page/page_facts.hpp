@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "agricolmap/core/cloud.hpp"
 #include "agricolmap/pipeline/registration.hpp"
+#include "agricolmap/report/page/registration_page.hpp"
 
 namespace agricolmap::report {
 
@@ -22,7 +22,7 @@ nlohmann::ordered_json stripFacts(const pipeline::Registration& registration);
 
 /// The rotation and shift that come nearest to the transform about the strip's middle, and how far
 /// the strip's corners lie from where they should under it [m]; null without a transform.
-nlohmann::ordered_json rigidFacts(const CloudFacts& fixed, const Cloud& moving,
+nlohmann::ordered_json rigidFacts(const CloudOrigins& origins,
                                   const pipeline::Registration& registration);
 
 }  // namespace agricolmap::report

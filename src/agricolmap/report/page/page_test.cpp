@@ -35,7 +35,8 @@ struct HostilePair {
     info.command_line = name;
     PageContent content;
     content.report = registrationJson(stream, moving, registration, monitor, info);
-    content.facts = pageFacts(stream, moving, registration, {}, "default", "a reason");
+    content.facts =
+        pageFacts({stream.facts().origin, moving.origin}, registration, {}, "default", "a reason");
     return content;
   }
 };
@@ -136,12 +137,10 @@ TEST(PageFacts, OptionsSayWhatDiffersFromTheDefaults) {
 
 TEST(PageFacts, TheNearestRigidTransformLaysTheMiddleRightAndSaysWhatItMisses) {
   pipeline::Registration registration = testing::testRegistration();
-  Cloud moving;
-  CloudFacts fixed;
   registration.maps.moving_box = {Eigen::Vector2d(2.0, 4.0), Eigen::Vector2d(8.0, 6.0)};
   Eigen::Affine3d& affine = registration.transform->local_fixed_from_moving;
   affine = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) * Eigen::Scaling(1.1, 1.1, 1.0);
-  const auto rigid = rigidFacts(fixed, moving, registration);
+  const auto rigid = rigidFacts({}, registration);
   EXPECT_NEAR(rigid["quaternion_xyzw"][2].get<double>(), std::sin(0.15), 1e-12);
   EXPECT_NEAR(rigid["most_off_m"].get<double>(), 0.1 * std::hypot(3.0, 1.0), 1e-9);
   const Eigen::Vector3d middle(5.0, 5.0, 0.0);

@@ -24,15 +24,14 @@ std::string plainWords(const PageContent& content) {
 
 }  // namespace
 
-Json pageFacts(const PointStream& fixed, const Cloud& moving,
-               const pipeline::Registration& registration,
+Json pageFacts(const CloudOrigins& origins, const pipeline::Registration& registration,
                const pipeline::RegistrationOptions& options, const std::string& preset,
                const std::string& scene_missing) {
   Json json;
   json["headline"] = headline(registration.verdict);
   json["strip"] = stripFacts(registration);
   json["blocks"] = blocksFacts(registration);
-  json["rigid"] = rigidFacts(fixed.facts(), moving, registration);
+  json["rigid"] = rigidFacts(origins, registration);
   json["options"] = optionsFacts(options, preset);
   json["scene_missing"] = scene_missing;
   json["with_3d"] = !pageScript3d().empty();

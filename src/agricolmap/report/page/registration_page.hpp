@@ -20,9 +20,15 @@ nlohmann::ordered_json pageScene(const PointStream& fixed, const Cloud& moving,
                                  const pipeline::Registration& registration,
                                  const Eigen::Affine3d& guess);
 
+/// Zeros of the clouds' local coordinates, in those of their files [m].
+struct CloudOrigins {
+  Eigen::Vector3d fixed = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moving = Eigen::Vector3d::Zero();
+};
+
 /// The facts of a page: words, blocks, options, the nearest rigid transform. `scene_missing`: why
 /// there are no maps and points, in words; empty where there are.
-nlohmann::ordered_json pageFacts(const PointStream& fixed, const Cloud& moving,
+nlohmann::ordered_json pageFacts(const CloudOrigins& origins,
                                  const pipeline::Registration& registration,
                                  const pipeline::RegistrationOptions& options,
                                  const std::string& preset, const std::string& scene_missing);

@@ -79,8 +79,8 @@ void drawMap(PictureCanvas& canvas, const ChangeScene& scene, const View& view, 
   drawNorth(canvas, view);
 }
 
-void drawColourBar(PictureCanvas& canvas, const PixelRect& bar) {
-  canvas.text({static_cast<double>(bar.x), bar.y - 8.0}, "change of the surface [cm]",
+void drawColourBar(PictureCanvas& canvas, const PixelRect& bar, const std::string& quantity) {
+  canvas.text({static_cast<double>(bar.x), bar.y - 8.0}, quantity,
               {13.0, palette::kInk, true, Align::kLeft});
   canvas.paint(bar, [&](int /*y*/, std::uint32_t* row) {
     for (int i = 0; i < bar.width; ++i) row[i] = colourOf(2.0 * (i + 0.5) / bar.width - 1.0);
@@ -129,14 +129,16 @@ void drawHistogram(PictureCanvas& canvas, const PixelRect& rect,
 
 void drawSide(PictureCanvas& canvas, const ChangeScene& scene, int top, double reach) {
   const PixelRect bar{kSide, top + 20, kSideWidth, 18};
-  drawColourBar(canvas, bar);
+  drawColourBar(canvas, bar, scene.quantity);
   drawMarks(canvas, bar, reach);
-  const PixelRect key{kSide, top + 72, 26, 15};
-  canvas.paint(key, [&](int y, std::uint32_t* row) {
-    for (int i = 0; i < key.width; ++i) row[i] = lightHatch(key.x + i, y);
-  });
-  canvas.frame(key, {1.0, hexColour(0x8a9099), {}});
-  canvas.text({kSide + 34.0, top + 84.0}, "no more than its errors (95 %)", {});
+  if (scene.levels) {
+    const PixelRect key{kSide, top + 72, 26, 15};
+    canvas.paint(key, [&](int y, std::uint32_t* row) {
+      for (int i = 0; i < key.width; ++i) row[i] = lightHatch(key.x + i, y);
+    });
+    canvas.frame(key, {1.0, hexColour(0x8a9099), {}});
+    canvas.text({kSide + 34.0, top + 84.0}, "no more than its errors (95 %)", {});
+  }
   canvas.frame({kSide, top + 96, 26, 15}, {1.0, hexColour(0x8a9099), {}});
   canvas.text({kSide + 34.0, top + 108.0}, "not compared", {});
   drawHistogram(canvas, {kSide, top + 154, kSideWidth, 130}, scene.change);

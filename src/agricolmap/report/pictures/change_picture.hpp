@@ -15,6 +15,9 @@ struct ChangeScene {
   GridFrame frame;                 ///< of the change
   std::string subtitle;            ///< which maps
   std::vector<std::string> facts;  ///< lines beside the map
+  /// What changed, in hundredths.
+  std::string quantity = "change of the surface [cm]";
+  bool levels = true;  ///< whether what is no more than its errors is told apart
 };
 
 /// Brown fell, green-blue rose (ColorBrewer's BrBG, which the colour-blind tell apart); hatched is

@@ -92,8 +92,8 @@ TEST_F(Pictures, SameOnAnyNumberOfThreads) {
 TEST_F(Pictures, RejectionIsABanner) {
   pipeline::Registration registration = plainRegistration();
   registration.verdict = {verdict::Status::kRejected,
-                          {"another place fits almost as well: the peak is 1.10 times the highest "
-                           "other one (at least 1.40 needed)",
+                          {"another place scores almost as high: this one has 1.10 times its "
+                           "score",
                            "only 3 of 9 blocks, placed alone, agree with the whole"}};
   const auto names = writePictures(dir_, registration, kInfo);
   EXPECT_EQ(names.size(), 5U);

@@ -23,7 +23,11 @@ function volumeWords({ volume_m3: volume, volume_interval_m3: [low, high] }) {
   return `${fixed(volume, digits)} m³ (${fixed(low, digits)} to ${fixed(high, digits)})`;
 }
 
-function changeLead({ surface }) {
+function changeLead({ surface, cover }) {
+  if (!surface) {
+    return `The green cover of the field went from ${percent(cover.mean_before)} to ${percent(cover.mean_after)}. ` +
+      "These maps have no heights, and of covers no level of detection is known: what of it is error nobody can tell.";
+  }
   const { compared, rise, fall } = surface;
   const part = ({ area_m2: area }) => percent(area / compared.area_m2);
   if (rise.cells + fall.cells === 0) return "Nowhere did the surface change by more than the errors of both maps.";
@@ -31,8 +35,7 @@ function changeLead({ surface }) {
     "of both maps. What else differs may be error.";
 }
 
-function changeFigures({ surface, plant_height: plants, cover }) {
-  const { rise, fall, compared, bare_ground: bare, median_detection_m: level } = surface;
+function surfaceFigures({ rise, fall, compared, bare_ground: bare, median_detection_m: level }) {
   const part = (share) => [squares(share.area_m2), share.cells
     ? `by ${cm(share.median_m)} (median); ${volumeWords(share)}` : "nowhere by more than errors"];
   const figures = [["Rose", ...part(rise)], ["Fell", ...part(fall)],
@@ -41,6 +44,11 @@ function changeFigures({ surface, plant_height: plants, cover }) {
   if (bare?.cells) {
     figures.push(["Bare ground", signedCm(bare.mean_m), `± ${cm(1.96 * bare.mean_deviation_m)} expected: a check`]);
   }
+  return figures;
+}
+
+function changeFigures({ surface, plant_height: plants, cover }) {
+  const figures = surface ? surfaceFigures(surface) : [];
   if (plants?.cells) figures.push(["Plants", signedCm(plants.median_change_m), `from ${cm(plants.median_before_m)} to ${cm(plants.median_after_m)}`]);
   if (cover) {
     figures.push(["Cover", `${cover.mean_change > 0 ? "+" : ""}${fixed(100 * cover.mean_change, 1)}\u00a0%`,
@@ -50,7 +58,7 @@ function changeFigures({ surface, plant_height: plants, cover }) {
 }
 
 function changeIntroduction(report, facts) {
-  const { bare_ground: bare } = report.surface;
+  const bare = report.surface?.bare_ground;
   const moved = bare?.cells && Math.abs(bare.mean_m) > 1.96 * bare.mean_deviation_m;
   const ways = [["before", facts.map_before], ["after", facts.map_after]].filter(([, way]) => way);
   return el("section", { id: "verdict", class: `verdict ${moved ? "ambiguous" : "plain"}`, tabindex: "-1",
@@ -85,18 +93,21 @@ async function numberAt(pictures, layer, scales, local, channel = 0) {
 function placeAsker(pictures, scales) {
   return async (local) => {
     const value = (layer) => (scales[layer] ? numberAt(pictures, layer, scales, local) : null);
-    const change = await value("change");
-    if (change === null) return [["Here", "nothing was compared"]];
-    const sure = await numberAt(pictures, "change", scales, local, 2);
-    const level = (await numberAt(pictures, "change", scales, local, 1)) / 255 * scales.change[1];
-    const facts = [["Surface", signedCm(change)],
-      ["Level of detection", level >= scales.change[1] * 0.998 ? `${cm(level)} or more` : cm(level)],
-      ["More than errors", sure > 0 ? "yes" : "no"]];
+    const facts = [];
+    if (scales.change) {
+      const change = await value("change");
+      if (change === null) return [["Here", "nothing was compared"]];
+      const sure = await numberAt(pictures, "change", scales, local, 2);
+      const level = (await numberAt(pictures, "change", scales, local, 1)) / 255 * scales.change[1];
+      facts.push(["Surface", signedCm(change)],
+        ["Level of detection", level >= scales.change[1] * 0.998 ? `${cm(level)} or more` : cm(level)],
+        ["More than errors", sure > 0 ? "yes" : "no"]);
+    }
     for (const [name, label, words] of [["plant_height", "Plants", cm], ["cover", "Green", (v) => `${fixed(100 * v, 0)} %`]]) {
       const [before, after] = [await value(`before_${name}`), await value(`after_${name}`)];
       if (before !== null && after !== null) facts.push([label, `${words(before)} before, ${words(after)} after`]);
     }
-    return facts;
+    return facts.length ? facts : [["Here", "nothing was compared"]];
   };
 }
 
@@ -132,12 +143,14 @@ function changeLegend(layers, scales, state) {
 }
 
 function changeSection(scene, report) {
-  const layers = { squares: new PackedLayer("squares", scene.layers.squares) };
+  const layers = Object.fromEntries(Object.entries(scene.layers).map(([name, json]) => [name, new PackedLayer(name, json)]));
+  const first = ["plots", "grid", "squares"].find((name) => layers[name]?.size > 0);
+  const parts = first === "plots" ? "plot" : "square";
   const pictures = (scene.maps?.fixed ?? []).map((json) => new Picture(json, json.local_from_image, derivedOf(json)));
   const has = (name) => pictures.some((picture) => picture.has(name));
   const seen = SEEN.filter(([name]) => has(`before_${name}`) && has(`after_${name}`));
   const changes = CHANGES.filter(([name]) => has(name));
-  const state = { left: "before", right: "change", seen: seen[0]?.[0], changed: "change", sure: true };
+  const state = { left: "before", right: "change", seen: seen[0]?.[0], changed: changes[0]?.[0] ?? "change", sure: true };
   const corners = cornersOf(pictures, layers);
   const scales = scene.maps?.scales ?? {};
   const drawn = () => [state.left, state.right].map((side) => layerOf(side, state));
@@ -147,9 +160,9 @@ function changeSection(scene, report) {
     middle: [0, 1].map((k) => (Math.min(...corners.map((c) => c[k])) + Math.max(...corners.map((c) => c[k]))) / 2),
     sides: () => [state.left, state.right].map((side) =>
       ({ label: words.get(side), layer: layerOf(side, state), strips: [], other: [] })),
-  }, state, { things: CHANGE_THINGS, layers, first: "squares",
+  }, state, { things: CHANGE_THINGS, layers, first,
     hint: "Click a place, or press Enter for what is under the cross in the middle, for what it was, is and by how much " +
-      "it changed; N and P go to the next square and the one before, Escape lets go.",
+      `it changed; N and P go to the next ${parts} and the one before, Escape lets go.`,
     askPlace: pictures.length ? placeAsker(pictures, scales) : undefined });
   const redraw = async (made) => {
     Object.assign(state, made);
@@ -164,15 +177,17 @@ function changeSection(scene, report) {
     choice("right", "Right", SIDES, state.right, (right) => redraw({ right })),
     seen.length > 1 ? choice("seen", "Seen by", seen, state.seen, (name) => redraw({ seen: name })) : null,
     changes.length > 1 ? choice("changed", "Change of", changes, state.changed, (changed) => redraw({ changed })) : null,
-    check("Grey where it may be error", true, (sure) => redraw({ sure }))] : [];
+    report.surface ? check("Grey where it may be error", true, (sure) => redraw({ sure })) : null] : [];
   const cell = report.grid.cell_m;
   return section("map", "Before, after and between", "Map",
-    pictures.length ? null : el("p", { class: "warn" }, "Without pictures (--no-pictures): squares stand on empty ground."),
+    pictures.length ? null : el("p", { class: "warn" }, `Without pictures (--no-pictures): ${parts}s stand on empty ground.`),
     el("div", { class: "tools" }, ...tools),
-    el("div", { class: "tools keys" }, map.switches(), map.zooms(corners)),
-    map.view.root, map.legend, map.card,
-    el("h3", {}, "Square by square"),
-    el("p", { class: "hint" }, "The mean of a square is more than errors where it exceeds the mean level of its cells: neighbours err as one."),
+    el("div", { class: "tools keys" }, map.switches(), map.shading(), map.zooms(corners)),
+    map.view.root, map.shadeLegend, map.legend, map.card,
+    el("h3", {}, parts === "plot" ? "Plot by plot" : "Square by square"),
+    report.surface ? el("p", { class: "hint" }, layers.squares && parts === "square"
+      ? "The mean of a square is more than errors where it exceeds the mean level of its cells: neighbours err as one."
+      : `The mean of a ${parts} is more than errors where it exceeds what all of it has in common: of its sources, and of the maps' frames.`) : null,
     map.lists(),
     map.hint(`Cells are ${length(cell)}${pictures.length ? `, pixels ${length(pictures[0].json.pixel_m)}` : ""}; the GeoTIFFs have all cells. ` +
       "Where the map is empty nothing was compared."));
@@ -180,7 +195,7 @@ function changeSection(scene, report) {
 
 function numbersPart(report, facts, scene) {
   return section("numbers", "All of it in numbers", "Numbers",
-    changeChart(scene.cells),
+    scene.cells ? changeChart(scene.cells) : null,
     el("h3", {}, "In words"),
     el("dl", { class: "words" }, ...facts.facts.map(([label, text]) => el("div", {}, el("dt", {}, label), el("dd", {}, text.replaceAll("+-", "±").replace(/\bm([23])\b/g, (_, k) => (k === "2" ? "m²" : "m³")))))),
     el("p", {}, `Between the frames of both maps ${known(report.frame_error.height_m) && report.frame_error.height_m + report.frame_error.plane_m > 0

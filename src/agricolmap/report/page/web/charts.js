@@ -74,7 +74,8 @@ export function blocksChart(facts, agreement) {
     const words = `Block at ${fixed(b.along_m, 1)} m, ${b.agrees ? "agrees" : "disagrees"}: placed ` +
       `alone it fits best ${length(off(b) / 100)} away (${fixed(100 * b.offset_along_m, 1)} cm along, ` +
       `${fixed(100 * b.offset_across_m, 1)} cm across the strip).`;
-    parts.push(mark(x(b.along_m), y(off(b)), b.agrees, words));
+    // Those side by side across the strip beside each other, too.
+    parts.push(mark(x(b.along_m) + 6 * Math.sign(b.across_m), y(off(b)), b.agrees, words));
   });
   return figure("Blocks along the strip, and how far off each is", height, parts,
     "Point at a block, or tab to it, for its numbers.");
@@ -83,11 +84,13 @@ export function blocksChart(facts, agreement) {
 /** Scores side by side: the strip's own, the next best place, mirrored copies. */
 export function scoresChart(report) {
   const { significance, uniqueness, decoys } = report.evidence;
-  const rows = [{ label: "This place", value: significance, own: true }];
+  const rows = [{ label: report.alternatives.length ? "Place 1" : "This place", value: significance, own: true }];
   report.alternatives.forEach((other, i) =>
     rows.push({ label: `Place ${i + 2}`, value: other.significance }));
-  if (known(uniqueness) && uniqueness > 0) {
-    rows.push({ label: "Highest other peak", value: significance / uniqueness });
+  // What is highest beside it may be one of the places above.
+  const next = known(uniqueness) && uniqueness > 0 ? significance / uniqueness : 0;
+  if (next > 0 && !report.alternatives.some((other) => Math.abs(other.significance / next - 1) < 0.01)) {
+    rows.push({ label: "Next best place", value: next });
   }
   decoys.forEach((value, i) => rows.push({ label: `Mirrored copy ${i + 1}`, value }));
   const most = Math.max(...rows.map((row) => row.value), 1e-9);
@@ -98,10 +101,10 @@ export function scoresChart(report) {
         el("span", { class: "length", style: `width:${(70 * Math.max(0, row.value)) / most}%`, "aria-hidden": "true" }),
         el("span", {}, fixed(row.value, 1)))])),
     el("figcaption", {}, decoys.length
-      ? "How far each peak stands out of chance, in standard deviations. Mirrored copies of the " +
+      ? "How far each place stands out from chance, in standard deviations. Mirrored copies of the " +
         "strip fit nowhere: their scores are what a wrong place reaches on this pair."
-      : "How far each peak stands out of chance, in standard deviations. The place is so clear " +
-        "that mirrored copies of the strip were not needed to compare with."));
+      : "How far each place stands out from chance, in standard deviations. A score this high is not " +
+        "reached by chance: mirrored copies of the strip were not needed to compare with."));
 }
 
 export function sureSection(report, facts) {
@@ -115,11 +118,12 @@ export function sureSection(report, facts) {
     el("h3", {}, "Parts of the strip, each placed alone"),
     el("p", {}, total
       ? `The strip is cut into ${total} blocks, and each is looked for by itself. ${agreeing} of them ` +
-        `find the place that the whole gives them, to ${length(agreement)}.`
+        `find the place that the whole gives them, to ${length(agreement)}. A block alone is placed less ` +
+        "exactly than the whole: leaves and shadows move it by centimetres, and one that shows little is placed " +
+        "anywhere. Where several side by side are off by the same, that part of the strip lies elsewhere."
       : "Too little of the strip can be compared to place parts of it alone."),
     total ? blocksChart(facts, agreement) : null,
-    el("p", {}, `The strip's map and the drone's overlap by ${percent(report.residuals?.overlap)} ` +
-      `and correlate by ${fixed(report.residuals?.correlation, 2)} there.`));
+    el("p", {}, `${percent(report.residuals?.overlap)} of the strip lie on the drone's map.`));
 }
 
 /** How many cells changed by how much, those beyond their errors apart. */

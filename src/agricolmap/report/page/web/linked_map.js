@@ -23,6 +23,12 @@ function scaleOf(values) {
   return [low, high > low ? high : low + 1e-9];
 }
 
+/** The same as far below nothing as above. */
+function evenScale(values) {
+  const scale = scaleOf(values.map((value) => (value === null ? null : Math.abs(value))));
+  return scale && [-scale[1], scale[1]];
+}
+
 function dropdown(label, choices, onchange) {
   const list = el("select", { onchange: () => onchange(list.value) },
     ...choices.map(([value, text]) => el("option", { value }, text)));
@@ -64,13 +70,13 @@ export class LinkedMap {
   }
 
   pick(local) {
-    const found = this.marks.find(local, REACH / this.view.scale, this.view.scale);
+    const found = this.marks.find(local, REACH / this.view.scale, this.view.scale) ?? null;
     this.place = null;
-    if (found) return this.choose(found);
-    if (!this.askPlace) return this.choose(null);
+    if (!this.askPlace || (found && this.layers[found.name].kind !== "polygon")) return this.choose(found);
+    // Within a part of the field the place is asked, too.
     this.place = local;
-    this.choose(null, { keep: true });
-    return this.askPlace(local).then((facts) => { if (this.place === local) this.sayPlace(facts); });
+    this.choose(found, { keep: true });
+    return this.askPlace(local).then((facts) => { if (this.place === local) this.sayPlace(facts, found); });
   }
   /** `look`: brings it in sight. */
   choose(chosen, { look = false, keep = false } = {}) {
@@ -128,9 +134,12 @@ export class LinkedMap {
         button(this.title(other), () => this.choose(other, { look: true }))),
       button("Let go", () => this.choose(null))));
   }
-  sayPlace(facts) {
+  /** `part`: what the card tells of already. */
+  sayPlace(facts, part) {
     const [x, y] = this.place.map((value, k) => value + this.view.scene.origin[k]);
-    this.card.replaceChildren(el("h3", {}, `At x ${x.toFixed(2)}, y ${y.toFixed(2)}`), this.list(facts));
+    const said = [el("h3", {}, `At x ${x.toFixed(2)}, y ${y.toFixed(2)}`), this.list(facts)];
+    if (part) this.card.append(...said);
+    else this.card.replaceChildren(...said);
   }
   list(facts) {
     return el("dl", {}, ...facts.map(([label, text]) => el("div", {}, el("dt", {}, label), el("dd", {}, text))));
@@ -171,16 +180,20 @@ export class LinkedMap {
       const { thing, measure } = choice;
       const layer = this.layers[thing.name];
       const values = Array.from({ length: layer.size }, (_, i) => measure.of(layer, i));
-      const scale = scaleOf(values);
+      const scale = measure.ramp ? evenScale(values) : scaleOf(values);
       if (scale) {
         const [low, high] = scale;
+        const sure = (i) => measure.sure?.(layer, i) ?? true;
         // What is shaded can be clicked, too.
         this.marks.on[thing.name] = this.boxes[thing.name].checked = true;
-        this.marks.shade = { name: thing.name,
-          share: (i) => (values[i] === null ? null : (values[i] - low) / (high - low)) };
+        this.marks.shade = { name: thing.name, ramp: measure.ramp,
+          share: (i) => (values[i] === null ? null : (values[i] - low) / (high - low)),
+          unsure: (i) => !sure(i),
+          text: (i) => measure.text(values[i]) };
         this.shadeLegend.replaceChildren(el("div", { class: "tools" },
           el("span", {}, `${thing.many}: ${measure.title.toLowerCase()}`),
-          rampLegend("height", scale, scale.map((value) => measure.text(value, layer, 0)))));
+          rampLegend(measure.ramp ?? "height", scale, scale.map((value) => (measure.ramp ? measure.text(value) : measure.text(value, layer, 0)))),
+          measure.sure ? el("span", {}, el("i", { class: "swatch unsure" }), "no more than its errors") : null));
       }
       this.tabs?.(thing.name);
     }

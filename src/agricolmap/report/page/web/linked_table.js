@@ -36,7 +36,9 @@ export class LinkedTable {
     this.name = { title: head ?? one, of: nameOf };
     this.columns = [this.name, ...columnsOf(this.thing, this.layer)];
     this.region.setAttribute("aria-label", many);
-    const first = sorts === undefined ? null : columns[sorts];
+    const wanted = sorts === undefined ? null : columns[sorts];
+    // A layer need not have the column that tables of its kind begin with.
+    const first = wanted === null || this.columns.includes(wanted) ? wanted : this.columns[1] ?? null;
     this.sort(first ?? this.name, first ? -1 : 1);
   }
   sort(column, sense) {

@@ -4,6 +4,7 @@ import { apply, Picture, RAMPS } from "./layers.js";
 import { MapView } from "./map_view.js";
 import { button, check, choice, el, section } from "./dom.js";
 import { fixed } from "./format.js";
+import { unguessed } from "./words.js";
 
 const LAYERS = [["colour", "Colour"], ["exg", "Excess Green"], ["height", "Height"]];
 
@@ -22,6 +23,7 @@ const middleOf = (corners) => [0, 1].map((k) =>
 /** Everything that can lie on the map. */
 function sceneOf(report, facts, maps) {
   const best = report.status === "accepted" ? "Registered" : "Best answer";
+  const came = unguessed(facts) ? "As it came" : "As guessed";
   const base = maps.fixed.map((json) => new Picture(json, json.local_from_image));
   const strip = new Picture(maps.moving.picture, maps.moving.before);
   const bent = maps.moving.straight ? new Picture(maps.moving.straight, maps.moving.after) : strip;
@@ -31,7 +33,8 @@ function sceneOf(report, facts, maps) {
   const after = maps.moving.after ? laid(bent, maps.moving.after) : null;
   const others = (maps.moving.others ?? []).map((affine) => laid(strip, affine));
   const places = after ? [after, ...others] : [];
-  const focus = [...strip.corners(maps.moving.before), ...(after ? bent.corners(after.affine) : [])];
+  const focus = report.status === "ambiguous" ? places.flatMap((place) => strip.corners(place.affine))
+    : [...strip.corners(maps.moving.before), ...(after ? bent.corners(after.affine) : [])];
   return {
     base, focus, middle: middleOf(after ? bent.corners(after.affine) : strip.corners()), origin: report.fixed.origin_m,
     pictures: [...base, strip, bent],
@@ -39,12 +42,14 @@ function sceneOf(report, facts, maps) {
     placesOf: (place) => [...strip.corners(maps.moving.before), ...strip.corners(places[place].affine)],
     label: "The drone's map from above with the robot's strip on it",
     sides(state) {
-      const found = { other: before.outline, label: state.place > 0 ? `Place ${state.place + 1}` : best,
+      const rest = places.map((place, i) => ({ outline: place.outline, label: `Place ${i + 1}` }))
+        .filter((_, i) => i !== state.place);
+      const found = { other: before.outline, rest, label: others.length ? `Place ${state.place + 1}` : best,
         strips: places.length ? [places[state.place]] : [],
         blocks: state.place === 0 ? facts.blocks : null };
-      const guess = { label: "As guessed", strips: [before],
+      const guess = { label: came, strips: [before],
         other: places.length ? places[state.place].outline : [] };
-      const bare = { label: "Drone alone", strips: [], other: [] };
+      const bare = { label: "Drone alone", strips: [], other: [], rest };
       if (!places.length) return [bare, guess];
       return state.compare === "guess" ? [guess, found] : [bare, found];
     },
@@ -53,7 +58,7 @@ function sceneOf(report, facts, maps) {
 
 function candidates(report, redraw) {
   if (!report.alternatives.length) return null;
-  const all = [["0", "Best"], ...report.alternatives.map((_, i) => [String(i + 1), `Place ${i + 2}`])];
+  const all = ["", ...report.alternatives].map((_, i) => [String(i), `Place ${i + 1}`]);
   return choice("place", "Candidate", all, "0", (value) => redraw({ place: Number(value) }));
 }
 
@@ -74,7 +79,8 @@ export function zoomButtons(view, sights) {
 export function mapSection(report, facts, maps) {
   const scene = sceneOf(report, facts, maps);
   const layers = LAYERS.filter(([name]) => scene.pictures.every((picture) => picture.has(name)));
-  const state = { layer: layers[0][0], compare: "guess", outline: true, blocks: false, place: 0 };
+  const start = unguessed(facts) && report.transform ? "drone" : "guess";
+  const state = { layer: layers[0][0], compare: start, outline: true, blocks: false, place: 0 };
   const view = new MapView(scene, state);
   const legend = el("div", { class: "legend" });
   const redraw = async (change) => {
@@ -87,7 +93,7 @@ export function mapSection(report, facts, maps) {
     layers.length > 1 ? choice("layer", "Layer", layers, state.layer,
       (layer) => redraw({ layer })) : null,
     report.transform ? choice("compare", "Left of the handle",
-      [["guess", "as guessed"], ["drone", "drone alone"]], "guess",
+      [["guess", start === "guess" ? "as guessed" : "as it came"], ["drone", "drone alone"]], start,
       (compare) => redraw({ compare })) : null,
     candidates(report, (change) => {
       view.fitTo(scene.placesOf(change.place));
@@ -102,10 +108,13 @@ export function mapSection(report, facts, maps) {
     ? " On the registered side the bend is taken out of the strip." : "";
   return section("map", "Before and after", "Map",
     el("p", {}, report.transform
-      ? `Drag the handle. Left of it the strip lies where the guess put it, right of it where the ` +
-        `${report.status === "accepted" ? "registration" : "best answer"} does: rows and plants of ` +
-        `strip and map should run into each other across the outline.${bend}`
+      ? `Drag the handle. Left of it ${start === "guess" ? "the strip lies where the guess put it" : "is the drone's map alone"}, ` +
+        `right of it the strip lies where the ${report.status === "accepted" ? "registration" : "best answer"} puts it: ` +
+        `its rows and plants and the map's should run into each other across the outline.${bend}`
       : "There is no registered place; the strip is shown where the guess put it."),
     tools, view.root, legend,
-    mapHint("Dashed: the strip's place on the other side. Grey was not seen, or the guess rules it out."));
+    mapHint("Dashed: the strip's place on the other side" +
+      `${report.alternatives.length ? ", and the other places where it fits, with their numbers" : ""}. Grey: not seen ` +
+      "by the drone, or too far from the guess to be looked at. Blocks: discs agree with the whole, " +
+      "crosses do not."));
 }

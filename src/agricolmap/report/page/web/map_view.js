@@ -135,7 +135,13 @@ export class MapView {
       strip.picture.draw(context, layer, view, strip.affine);
       if (this.state.outline) this.outline(context, strip.outline, view, []);
     }
-    if (this.state.outline) this.outline(context, side.other, view, [6, 6]);
+    if (this.state.outline) {
+      this.outline(context, side.other, view, [6, 6]);
+      for (const { outline, label } of side.rest ?? []) {
+        this.outline(context, outline, view, [6, 6]);
+        this.label(context, outline, label, view);
+      }
+    }
     if (this.state.blocks && side.blocks) this.blocks(context, side.blocks, view);
     context.restore();
   }
@@ -147,12 +153,24 @@ export class MapView {
     context.beginPath();
     for (const corner of corners) context.lineTo(...apply(view, corner));
     context.closePath();
-    for (const [width, colour] of [[3.5, "#000000b0"], [1.5, "#ffffff"]]) {
+    for (const [width, colour] of [[5, "#000000c0"], [2.5, "#00e5ff"]]) {
       context.lineWidth = width * this.ratio;
       context.strokeStyle = colour;
       context.stroke();
     }
     context.setLineDash([]);
+  }
+  label(context, corners, text, view) {
+    const pixels = corners.map((corner) => apply(view, corner));
+    const [x, y] = [0, 1].map((k) => pixels.reduce((sum, p) => sum + p[k], 0) / pixels.length);
+    context.font = `600 ${13 * this.ratio}px system-ui, sans-serif`;
+    context.textAlign = "center";
+    const half = context.measureText(text).width / 2 + 6 * this.ratio;
+    context.fillStyle = "#000000b3";
+    context.fillRect(x - half, y - 14 * this.ratio, 2 * half, 21 * this.ratio);
+    context.fillStyle = "#ffffff";
+    context.fillText(text, x, y + 2 * this.ratio);
+    context.textAlign = "start";
   }
 
   /** Blocks as discs that agree and crosses that do not, with a line to where each fits best. */

@@ -2,13 +2,14 @@
 
 import { PlaceIndex } from "./packed.js";
 import { svg } from "./dom.js";
-import { apply, rampTable, RAMPS } from "./layers.js";
+import { apply, rampTable, RAMPS, UNSURE } from "./layers.js";
 
 const HALO = "#000000b0";
 const FAINT_HALO = "#00000060";
 const CHOSEN = "#00e5ff";
 const PATH_MARKS = 200;  // in one path: long ones take long to stroke
-const SHADES = rampTable(RAMPS.height);
+const SHADES = { height: rampTable(RAMPS.height), change: rampTable(RAMPS.change) };
+const MAY_BE_ERROR = rampTable([UNSURE, UNSURE])[0];
 
 /** How each kind of mark is drawn: a colour and a shape that tell it apart without the colour. */
 const MARK_SHAPES = {
@@ -43,7 +44,7 @@ export class Marks {
     this.places = {};
     this.on = Object.fromEntries(this.things.map((thing) => [thing.name, thing.shown !== false]));
     this.chosen = null;  // { name, i }
-    this.shade = null;   // { name, share(i): 0…1 or null }
+    this.shade = null;   // { name, ramp, share(i): 0…1 or null, unsure(i), text(i) }
   }
   index(name) {
     this.places[name] ??= new PlaceIndex(this.layers[name]);
@@ -160,12 +161,12 @@ export class Marks {
     context.setLineDash([]);
   }
   drawShade(context, view, box, ratio) {
-    const { name, share } = this.shade;
+    const { name, share, ramp = "height", unsure } = this.shade;
     const layer = this.layers[name];
     this.index(name).within(box, (i) => {
       const value = share(i);
       if (value === null) return;
-      const colour = SHADES[Math.round(255 * Math.min(1, Math.max(0, value)))];
+      const colour = unsure(i) ? MAY_BE_ERROR : SHADES[ramp][Math.round(255 * Math.min(1, Math.max(0, value)))];
       const path = new Path2D();
       this.trace(path, view, layer, i, { shape: "outline" }, ratio);
       if (layer.kind === "polygon") {
@@ -178,23 +179,30 @@ export class Marks {
       }
     });
   }
-  /** Names in the middle of parts that have the room. */
+  /** Names in the middle of parts that have the room; below them what they are shaded by, which need not be read off colours. */
   drawLabels(context, view, box, thing, ratio) {
     const layer = this.layers[thing.name];
+    const told = this.shade?.name === thing.name ? this.shade : null;
     context.font = `600 ${12 * ratio}px system-ui, sans-serif`;
     context.textAlign = "center";
     context.textBaseline = "middle";
     this.index(thing.name).within(box, (i) => {
-      const text = String(layer.value("id", i));
       const [west, south, east, north] = layer.box(i);
       const [x0, y0] = apply(view, [west, north]);
       const [x1, y1] = apply(view, [east, south]);
-      if (context.measureText(text).width + 8 * ratio > x1 - x0 || y1 - y0 < 16 * ratio) return;
-      context.lineWidth = 3 * ratio;
-      context.strokeStyle = HALO;
-      context.strokeText(text, (x0 + x1) / 2, (y0 + y1) / 2);
-      context.fillStyle = "#ffffff";
-      context.fillText(text, (x0 + x1) / 2, (y0 + y1) / 2);
+      const name = String(layer.value("id", i));
+      const lines = told && told.share(i) !== null && y1 - y0 > 34 * ratio ? [name, told.text(i)] : [name];
+      const fits = (text) => context.measureText(text).width + 8 * ratio <= x1 - x0;
+      if (!fits(name) || y1 - y0 < 16 * ratio) return;
+      const shown = lines.filter(fits);
+      shown.forEach((text, k) => {
+        const y = (y0 + y1) / 2 + (k - (shown.length - 1) / 2) * 15 * ratio;
+        context.lineWidth = 3 * ratio;
+        context.strokeStyle = HALO;
+        context.strokeText(text, (x0 + x1) / 2, y);
+        context.fillStyle = "#ffffff";
+        context.fillText(text, (x0 + x1) / 2, y);
+      });
     });
   }
   drawChosen(context, view, ratio) {

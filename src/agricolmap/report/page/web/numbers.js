@@ -109,5 +109,5 @@ export function numbersSection(report, facts) {
     el("h3", {}, "Options"), ...optionsPart(report, facts),
     el("h3", {}, "To do it again"),
     el("p", {}, `Guess: ${report.prior.source}. Seed ${report.seed}. AgriColMap ${report.version}.`),
-    el("pre", { tabindex: "0", "aria-label": "Command line" }, report.command_line));
+    report.command_line ? el("pre", { tabindex: "0", "aria-label": "Command line" }, report.command_line) : null);
 }

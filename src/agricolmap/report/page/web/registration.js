@@ -2,7 +2,7 @@
 
 import { el, section, svg } from "./dom.js";
 import { shortNames } from "./format.js";
-import { bendWords, errorWords, figures, lead, placeWords, sureWords, title } from "./js";
+import { bendWords, errorWords, figures, lead, otherPlaces, placeWords, sureWords, title, useWords } from "./words.js";
 import { mapSection } from "./map_section.js";
 import { bendSection, sureSection } from "./charts.js";
 import { numbersSection, transformSection } from "./numbers.js";
@@ -20,22 +20,23 @@ function verdictSection(report, facts) {
   const [fixedName, movingName] = shortNames(report.fixed.path, report.moving.path);
   const icon = svg("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" },
     svg("path", { d: SHAPES[status] }));
-  const sentences = [placeWords(report), sureWords(report), errorWords(report),
-    bendWords(report)].filter(Boolean);
-  const tiles = figures(report);
+  const sentences = [placeWords(report, facts), ...otherPlaces(report), sureWords(report),
+    errorWords(report), bendWords(report)].filter(Boolean);
+  const tiles = figures(report, facts);
+  const use = useWords(report);
   return el("section", { id: "verdict", class: `verdict ${status}`, tabindex: "-1", "aria-labelledby": "verdict-title",
     "data-short": "Verdict" },
     el("p", { class: "subject" }, `${movingName}, laid into ${fixedName}`),
     el("h1", { id: "verdict-title" }, icon, title(report)),
     el("p", { class: "lead" }, lead(report)),
+    use ? el("p", { class: `use${report.deformation || report.heights?.status === "limited" ? " careful" : ""}` }, use) : null,
     status === "accepted" ? null : reasonsPart(report),
-    tiles.length ? el("dl", { class: "figures" }, ...tiles.map(([label, value, meaning]) =>
-      el("div", {}, el("dt", {}, label), el("dd", {}, el("strong", {}, value), el("span", {}, meaning))))) : null,
+    tiles.length ? el("dl", { class: "figures" }, ...tiles.map(([label, value, meaning, tone]) =>
+      el("div", { class: tone }, el("dt", {}, label), el("dd", {}, el("strong", {}, value), el("span", {}, meaning))))) : null,
     el("p", {}, sentences.join(" ")),
     status === "accepted" ? reasonsPart(report) : null,
     report.warnings.length ? el("div", {}, el("h2", {}, "Worth knowing"),
-      el("ul", {}, ...report.warnings.map((line) => el("li", {}, line)))) : null,
-    facts.headline === status ? null : el("p", { class: "hint" }, `In one line: ${facts.headline}.`));
+      el("ul", {}, ...report.warnings.map((line) => el("li", {}, line)))) : null);
 }
 
 function reasonsPart(report) {
@@ -45,7 +46,8 @@ function reasonsPart(report) {
       list(report.reasons)),
     report.remedies.length ? el("div", {}, el("h2", {}, "What may help"), list(report.remedies),
       el("p", { class: "hint" },
-        "The guess: --prior; how good it is: --prior-sigma, --scale-unknown.")) : null);
+        "The guess is --prior FILE or offset.xyz; how good it is, --prior-sigma METRES,DEGREES,PERCENT, as in " +
+        "--prior-sigma 2,5,10, or none; --scale-unknown where the strip's unit is not known.")) : null);
 }
 
 /** Why there is no map here. */

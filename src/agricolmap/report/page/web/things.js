@@ -62,18 +62,49 @@ export const FIELD_THINGS = [
       field("certainty", "Certain by", percentOf)] },
 ];
 
-const SURE = { title: "More than errors", needs: ["change_m", "level_m"],
-  of: (layer, i) => Math.abs(layer.value("change_m", i)) - layer.value("level_m", i),
-  text: (value) => (value > 0 ? "yes" : "no") };
+const signedPercent = (value) => (known(value) && value > 0 ? `+${percentOf(value)}` : percentOf(value));
+const cubicMetres = (value) => `${fixed(value, 3)}\u00a0m³`;
+
+/** What a number grew by, and from what to what. */
+const growth = (before, after, title, text, end) => ({ title, needs: [before, after], of: (layer, i) => {
+  const [first, second] = [layer.value(before, i), layer.value(after, i)];
+  return first === null || second === null ? null : second - first;
+},
+text: (value, layer, i) => (layer ? `${text(value)} (${[before, after].map((name) => end(layer.value(name, i))).join(" to ")})`
+  : text(value)) });
+
+/** Shades of a change go both ways from nothing; `sure(layer, i)`: whether it is more than errors. */
+const shaded = (column, sure) => ({ ...column, ramp: "change", sure });
+
+const SQUARE_SURE = (layer, i) => Math.abs(layer.value("change_m", i)) > layer.value("level_m", i);
+const SQUARE_SURFACE = shaded(field("change_m", "Surface", change), SQUARE_SURE);
+const SQUARE_PLANTS = shaded(field("plant_height_change_m", "Plants' height", change));
+const SQUARE_COVER = shaded(field("cover_change", "Cover", signedPercent));
+
+const yes = (sure) => (sure ? "yes" : "no");
+const SURFACE = shaded(field("height_change_m", "Surface", change), (layer, i) => layer.value("more_than_errors", i) === 1);
+const GROWN = shaded(growth("plant_height_before_m", "plant_height_after_m", "Plants' height", change,
+  (value) => fixed(100 * value, 1)));
+const GREENER = shaded(growth("cover_before", "cover_after", "Cover", signedPercent, (value) => fixed(100 * value, 1)));
+
+/** Of a plot, or of a square that was asked for: columns of plots.csv and grid.csv. */
+const CHANGED = { sorts: 0, measures: [SURFACE, GROWN, GREENER],
+  columns: [SURFACE, field("height_change_level_m", "Level", centimetres), field("more_than_errors", "More than errors", yes),
+    field("rose_share", "Rose", percentOf), field("fell_share", "Fell", percentOf), GROWN, GREENER,
+    { ...field("volume_m3", "Volume", cubicMetres), text: (value, layer, i) => `${cubicMetres(value)} ` +
+      `(${fixed(layer.value("volume_low_m3", i), 3)} to ${fixed(layer.value("volume_high_m3", i), 3)})` },
+    field("compared_m2", "Compared", squareMetres)] };
 
 export const CHANGE_THINGS = [
   { name: "squares", one: "Square", many: "Squares", shape: "outline", colour: "#000000a0", shown: false, sorts: 0,
-    columns: [field("change_m", "Surface", change), field("level_m", "Level", centimetres), SURE,
-      field("rose", "Rose", percentOf), field("fell", "Fell", percentOf),
-      field("plant_height_change_m", "Plants' height", change),
-      field("cover_change", "Cover", (value) => (value > 0 ? `+${percentOf(value)}` : percentOf(value))),
-      field("volume_m3", "Volume", (value) => `${fixed(value, 3)}\u00a0m³`),
-      field("compared_m2", "Compared", squareMetres)] },
+    measures: [SQUARE_SURFACE, SQUARE_PLANTS, SQUARE_COVER],
+    columns: [SQUARE_SURFACE, field("level_m", "Level", centimetres),
+      { title: "More than errors", needs: ["change_m", "level_m"], text: (value) => yes(value > 0),
+        of: (layer, i) => Math.abs(layer.value("change_m", i)) - layer.value("level_m", i) },
+      field("rose", "Rose", percentOf), field("fell", "Fell", percentOf), SQUARE_PLANTS, SQUARE_COVER,
+      field("volume_m3", "Volume", cubicMetres), field("compared_m2", "Compared", squareMetres)] },
+  { name: "grid", one: "Square", many: "Squares", shape: "outline", colour: "#000000a0", shown: false, ...CHANGED },
+  { name: "plots", one: "Plot", many: "Plots", shape: "outline", colour: "#ffffff", labels: true, ...CHANGED },
 ];
 
 /** Those of the columns that a layer has something to say in. */
