@@ -16,10 +16,13 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+# Who links to the library depends on its package, and ldconfig hears of it.
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 # Also for a library that is packaged beside the program that uses it.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/src/agricolmap/api)
 
-set(so_version ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(so_version ${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME agricolmap)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Registers coloured point clouds of one field, from the air and from the ground, to the centimetre, \
 says how far the result can be trusted, and makes one shared map of them with plants counted.")
@@ -53,11 +56,17 @@ python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The registration, maps and crop facts from Python, with NumPy arrays.")
 endif()
 
-# Each has its licence where Debian looks for it; the program what changed, too.
+# Each has its licence and its history where Debian looks for them; the program what changed, too.
+find_program(GZIP gzip REQUIRED)
+set(changelog ${PROJECT_BINARY_DIR}/debian/changelog)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/debian-changelog ${changelog} COPYONLY)
+# Without name and time, so that it is the same bytes every time.
+execute_process(COMMAND ${GZIP} -9nkf ${changelog} COMMAND_ERROR_IS_FATAL ANY)
 while(packages)
   list(POP_FRONT packages component package)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian-copyright RENAME copyright
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+  install(FILES ${changelog}.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
 endwhile()
 install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/agricolmap COMPONENT program)

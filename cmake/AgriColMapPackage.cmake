@@ -34,7 +34,7 @@ if(AGRICOLMAP_INSTALL)
     INSTALL_DESTINATION ${AGRICOLMAP_PACKAGE_DIR}
     NO_SET_AND_CHECK_MACRO)
   write_basic_package_version_file(
-    ${PROJECT_BINARY_DIR}/agricolmap-config-version.cmake COMPATIBILITY SameMinorVersion)
+    ${PROJECT_BINARY_DIR}/agricolmap-config-version.cmake COMPATIBILITY SameMajorVersion)
   install(FILES
     ${PROJECT_BINARY_DIR}/agricolmap-config.cmake
     ${PROJECT_BINARY_DIR}/agricolmap-config-version.cmake

@@ -1,8 +1,11 @@
 // `agricolmap diff`: maps made up by the test, with what changed between them known.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <sstream>
 
 #include "agricolmap/io/raster/geo_reader.hpp"
 #include "agricolmap/io/raster/geo_writer.hpp"
@@ -14,6 +17,34 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
+/// Rows of a table without quotes, by the names in its first line.
+using Table = std::vector<std::map<std::string, std::string>>;
+
+Table tableOf(const std::string& text) {
+  std::istringstream lines(text);
+  const auto cellsOf = [](const std::string& line) {
+    std::vector<std::string> cells(1);
+    for (const char letter : line) {
+      if (letter == ',') {
+        cells.emplace_back();
+      } else if (letter != '\r') {
+        cells.back() += letter;
+      }
+    }
+    return cells;
+  };
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> names = cellsOf(line);
+  Table rows;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> cells = cellsOf(line);
+    rows.emplace_back();
+    for (std::size_t i = 0; i < names.size(); ++i) rows.back()[names[i]] = cells.at(i);
+  }
+  return rows;
+}
+
 /// A field of plants in rows that run north, and what a map says of it.
 struct Field {
   Eigen::Vector2d south_west{500000.0, 5000000.0};
@@ -22,6 +53,7 @@ struct Field {
   int cols = 400;
   double growth = 1.0;       ///< of the plants east of the middle
   double heights_off = 0.0;  ///< [m]
+  bool flat = false;         ///< of orthomosaics alone
   std::string crs = "EPSG:32632";
   std::string drone = "june.laz";
 };
@@ -61,8 +93,10 @@ class DiffTest : public CliTest {
       layer.bands = std::move(bands);
       io::writeLayer(layersOf(name) / file, layer);
     };
-    write("surface.tif", {{&surface, "surface", "m"}});
-    write("plant_height.tif", {{&plants, "plant height", "m"}});
+    if (!field.flat) {
+      write("surface.tif", {{&surface, "surface", "m"}});
+      write("plant_height.tif", {{&plants, "plant height", "m"}});
+    }
     write("cover.tif", {{&cover, "cover", ""}});
     write("error.tif", {{&plane, "plane", "m"}, {&height, "height", "m"}});
     const Raster<std::uint16_t> source(field.rows, field.cols, 1);
@@ -70,7 +104,8 @@ class DiffTest : public CliTest {
     layer.overviews = io::Overviews::kNearest;
     write("source.tif", {{&source, "source", ""}});
     return describe(name, R"({"format": "agricolmap-map", "format_version": 1, "crs": null,
-      "flat": false, "sources": [{"code": 1, "id": "fixed", "date": null, "points": 7,
+      "flat": )" + std::string(field.flat ? "true" : "false") +
+                              R"(, "sources": [{"code": 1, "id": "fixed", "date": null, "points": 7,
       "file": ")" + field.drone +
                               R"("}]})");
   }
@@ -96,8 +131,9 @@ TEST_F(DiffTest, FindsWhatGrewAndNothingElse) {
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find("rose"), std::string::npos);
   EXPECT_EQ(entries("out"),
-            (std::set<std::string>{"change.html", "change.json", "change.png", "cover_change.tif",
-                                   "height_change.tif", "plant_height_change.tif"}));
+            (std::set<std::string>{"change.html", "change.json", "change.png", "cover_change.qml",
+                                   "cover_change.tif", "height_change.qml", "height_change.tif",
+                                   "plant_height_change.qml", "plant_height_change.tif"}));
   const io::Layer<float> change = io::readLayer<float>(inFolder("out/height_change.tif"));
   EXPECT_EQ(change.shape.bands,
             (std::vector<std::string>{"change", "level of detection", "significant"}));
@@ -122,6 +158,86 @@ TEST_F(DiffTest, FindsWhatGrewAndNothingElse) {
   EXPECT_GT(surface["rise"]["volume_m3"], 0.5 * truth);
   EXPECT_NEAR(surface["bare_ground"]["mean_m"], 0.0, 2e-3);
   EXPECT_GT(json["cover"]["mean_change"], 0.0);
+}
+
+TEST_F(DiffTest, SaysWhatChangedByPlotsAndBySquares) {
+  const std::string june = writeMap("june", {});
+  Field grown;
+  grown.growth = 1.5;
+  const std::string july = writeMap("july", grown);
+  // Corners in metres of the maps' own system: west of the middle, east of it, outside.
+  const auto ring = [](double west) {
+    return fmt::format("[[[{0},5000001],[{1},5000001],[{1},5000004],[{0},5000004],[{0},5000001]]]",
+                       500000.0 + west, 500000.0 + west + 2.0);
+  };
+  const auto plot = [&](const char* id, double west) {
+    return fmt::format(R"({{"type": "Feature", "properties": {{"plot": "{}"}},
+        "geometry": {{"type": "Polygon", "coordinates": {}}}}})",
+                       id, ring(west));
+  };
+  const auto file = [&](const std::string& features) {
+    return fmt::format(R"({{"type": "FeatureCollection", "crs": {{"type": "name", "properties":
+        {{"name": "urn:ogc:def:crs:EPSG::32632"}}}}, "features": [{}]}})",
+                       features);
+  };
+  write("plots.geojson",
+        file(plot("west", 1.0) + "," + plot("east", 5.0) + "," + plot("out", 30.0)));
+  run({"diff", june, july, "-o", inFolder("out"), "--plots", inFolder("plots.geojson"), "--grid",
+       "2", "-q"});
+  const Table plots = tableOf(contentOf(inFolder("out/plots.csv")));
+  ASSERT_EQ(plots.size(), 3U);
+  EXPECT_EQ(plots[0].at("id"), "west");
+  EXPECT_NEAR(std::stod(plots[0].at("compared_m2")), 6.0, 0.01);
+  EXPECT_NEAR(std::stod(plots[0].at("height_change_m")), 0.0, 1e-4);
+  EXPECT_EQ(plots[0].at("more_than_errors"), "0");
+  EXPECT_GT(std::stod(plots[1].at("height_change_m")), 0.005);
+  EXPECT_GT(std::stod(plots[1].at("rose_share")), 0.1);
+  EXPECT_GT(std::stod(plots[1].at("plant_height_after_m")),
+            1.3 * std::stod(plots[1].at("plant_height_before_m")));
+  EXPECT_GT(std::stod(plots[1].at("cover_after")), std::stod(plots[1].at("cover_before")));
+  // Nothing is known of the third, which is not the same as no change.
+  EXPECT_EQ(plots[2].at("compared_m2"), "0.00");
+  EXPECT_EQ(plots[2].at("height_change_m"), "");
+  EXPECT_EQ(plots[2].at("more_than_errors"), "");
+  EXPECT_EQ(tableOf(contentOf(inFolder("out/grid.csv"))).size(), 12U);
+  EXPECT_TRUE(entries("out").contains("change.gpkg"));
+
+  write("elsewhere.geojson", file(plot("out", 30.0)));
+  expectFailure(
+      {"diff", june, july, "-o", inFolder("none"), "--plots", inFolder("elsewhere.geojson")}, 3,
+      {"elsewhere.geojson", "nothing to compare", "coordinate system"});
+  // A run without plots leaves none of an earlier one behind.
+  run({"diff", june, july, "-o", inFolder("out"), "--overwrite", "-q"});
+  EXPECT_FALSE(entries("out").contains("plots.csv"));
+}
+
+TEST_F(DiffTest, ComparesGreennessAloneWhereThereAreNoHeights) {
+  Field field;
+  field.flat = true;
+  const std::string june = writeMap("june", field);
+  field.growth = 3.0;
+  const std::string july = writeMap("july", field);
+  const ProgramResult result = run({"diff", june, july, "-o", inFolder("out"), "--grid", "2"});
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(result.out.find("rose"), std::string::npos);
+  EXPECT_NE(result.out.find("cover"), std::string::npos);
+  EXPECT_EQ(entries("out"),
+            (std::set<std::string>{"change.gpkg", "change.html", "change.json", "change.png",
+                                   "cover_change.qml", "cover_change.tif", "grid.csv"}));
+  const nlohmann::json json = jsonOf(inFolder("out/change.json"));
+  EXPECT_TRUE(json["surface"].is_null());
+  EXPECT_GT(json["cover"]["mean_change"], 0.01);
+  const Table squares = tableOf(contentOf(inFolder("out/grid.csv")));
+  ASSERT_EQ(squares.size(), 12U);
+  EXPECT_FALSE(squares[0].contains("height_change_m"));
+  EXPECT_EQ(squares[0].at("cover_before"), squares[0].at("cover_after"));
+  EXPECT_LT(std::stod(squares[3].at("cover_before")), std::stod(squares[3].at("cover_after")));
+  // One of the two has heights, which nothing is there to compare with.
+  const ProgramResult mixed = run({"diff", june, writeMap("august", {}), "-o", inFolder("mixed")});
+  EXPECT_NE(mixed.err.find("has no heights, so only greenness is compared"), std::string::npos);
+  expectFailure({"diff", june, inFolder("august/layers/surface.tif"), "-o", inFolder("none"),
+                 "--error-b", "0.1", "0.1"},
+                3, {"august/layers/surface.tif is a surface", "has no heights"});
 }
 
 TEST_F(DiffTest, NothingIsNotCalledNegative) {
@@ -189,8 +305,8 @@ TEST_F(DiffTest, TakesSurfaceModels) {
   const nlohmann::json json = jsonOf(inFolder("out/change.json"));
   EXPECT_NEAR(json["surface"]["rise"]["mean_m"], 0.2, 1e-4);
   EXPECT_NEAR(json["surface"]["median_detection_m"], 1.96 * 0.05, 1e-4);
-  EXPECT_EQ(entries("out"),
-            (std::set<std::string>{"change.html", "change.json", "height_change.tif"}));
+  EXPECT_EQ(entries("out"), (std::set<std::string>{"change.html", "change.json",
+                                                   "height_change.qml", "height_change.tif"}));
 }
 
 TEST_F(DiffTest, RefusesMapsThatDoNotGoTogether) {
@@ -219,7 +335,7 @@ TEST_F(DiffTest, RefusesMapsThatDoNotGoTogether) {
           {"bare", "layers/surface.tif", "fuse"});
   refuses(describe("flat",
                    R"({"format": "agricolmap-map", "format_version": 1, "flat": true, )" + sources),
-          {"flat", "no heights"});
+          {"flat", "layers/cover.tif", "fuse"});
   std::filesystem::create_directories(inFolder("empty"));
   refuses(inFolder("empty"), {"empty", "map.json", "fuse"});
   refuses(inFolder("none"), {"none", "no such file"});

@@ -1,11 +1,12 @@
 # The library from outside: its tests see the public headers and the shared libraries alone, and the
 # examples are a project that finds what `cmake --install` put down.
-add_executable(library_test library_field_test.cpp library_maps_test.cpp library_ros_test.cpp
+add_executable(library_test library_change_test.cpp library_field_test.cpp library_maps_test.cpp library_ros_test.cpp
   library_stages_test.cpp library_test.cpp)
 target_compile_definitions(library_test PRIVATE
   AGRICOLMAP_PAIRS="${PAIRS}" AGRICOLMAP_EXPECTED_VERSION="${PROJECT_VERSION}")
 target_link_libraries(library_test PRIVATE
-  agricolmap::agricolmap agricolmap::agricolmap_pictures nlohmann_json::nlohmann_json
+  agricolmap::agricolmap agricolmap::agricolmap_batch agricolmap::agricolmap_pictures
+  nlohmann_json::nlohmann_json
   GTest::gtest_main)
 gtest_discover_tests(library_test TEST_PREFIX "library." DISCOVERY_TIMEOUT 60
   PROPERTIES LABELS library FIXTURES_REQUIRED cli_pairs TIMEOUT 300)

@@ -6,9 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "agricolmap/change/distribution.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/raster/geo_writer.hpp"
+#include "agricolmap/report/gis/layer_styles.hpp"
 #include "agricolmap/report/pictures/change_picture.hpp"
+#include "change_zones.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -27,7 +30,7 @@ ordered_json toJson(const change::Share& share) {
           {"median_m", share.median}};
 }
 
-ordered_json toJson(const LayerChange& layer, const char* kind, const char* unit) {
+ordered_json toJson(const change::LayerChange& layer, const char* kind, const char* unit) {
   const auto key = [&](const char* when) { return fmt::format("{}_{}{}", kind, when, unit); };
   return {{"cells", layer.cells},
           {key("before"), layer.before},
@@ -35,20 +38,30 @@ ordered_json toJson(const LayerChange& layer, const char* kind, const char* unit
           {key("change"), layer.after - layer.before}};
 }
 
+ordered_json surfaceJson(const change::Totals& totals) {
+  ordered_json json = {{"median_detection_m", totals.median_detection},
+                       {"compared", toJson(totals.compared)},
+                       {"rise", toJson(totals.rise)},
+                       {"fall", toJson(totals.fall)}};
+  if (totals.stable) json["bare_ground"] = toJson(*totals.stable);
+  return json;
+}
+
 void writePage(const io::OutputPath& path, const MapChange& found, const ChangeRun& run) {
-  const report::LayerTimes none;
-  const report::ChangeGround ground{found.ground.frame,
-                                    found.ground.origin.head<2>(),
-                                    found.heights,
-                                    found.surface,
-                                    found.plant_height ? found.plant_height->times : none,
-                                    found.cover ? found.cover->times : none,
-                                    found.colour_before,
-                                    found.colour_after};
+  const change::LayerTimes none;
+  const report::ChangeGround ground{
+      found.ground.frame,
+      found.ground.origin.head<2>(),
+      found.compared.heights,
+      found.surface,
+      found.compared.plant_height ? found.compared.plant_height->times : none,
+      found.compared.cover ? found.compared.cover->times : none,
+      found.colour_before,
+      found.colour_after};
   const auto pageOf = [&](const std::string& map) {
     return wayTo(std::filesystem::path(map) / "map.html", run.folder);
   };
-  ordered_json scene = report::changeScene(ground);
+  ordered_json scene = report::changeScene(ground, found.zones);
   if (run.pictures) report::addChangePictures(scene, ground);
   io::writeText(path,
                 report::changePage(toJson(found), std::move(scene),
@@ -56,8 +69,9 @@ void writePage(const io::OutputPath& path, const MapChange& found, const ChangeR
                                     pageOf(found.name_b), run.command_line, AGRICOLMAP_VERSION}));
 }
 
-void writeBands(const io::OutputPath& path, const MapChange& found,
-                const std::vector<io::GeoBand>& bands) {
+/// The first of the bands is the change; `reach`: what its colours reach to.
+void writeBands(const io::OutputPath& dir, const std::string& name, const MapChange& found,
+                const std::vector<io::GeoBand>& bands, double reach) {
   io::GeoLayer layer;
   layer.frame = found.ground.frame;
   layer.origin = found.ground.origin;
@@ -65,7 +79,8 @@ void writeBands(const io::OutputPath& path, const MapChange& found,
   layer.bands = bands;
   layer.nodata = std::numeric_limits<double>::quiet_NaN();
   layer.metadata = {{"AGRICOLMAP_BEFORE", found.name_a}, {"AGRICOLMAP_AFTER", found.name_b}};
-  io::writeLayer(path, layer);
+  io::writeLayer(dir / (name + ".tif"), layer);
+  report::writeChangeStyle(dir, name, reach, bands.front().unit);
 }
 
 /// Without the sign of what is rounded to nothing.
@@ -99,20 +114,19 @@ ordered_json toJson(const MapChange& found) {
         {"rows", frame.rows},
         {"cols", frame.cols},
         {"crs", found.ground.crs}}},
-      {"frame_error", {{"height_m", found.frames.height}, {"plane_m", found.frames.plane}}},
-      {"surface",
-       {{"median_detection_m", found.totals.median_detection},
-        {"compared", toJson(found.totals.compared)},
-        {"rise", toJson(found.totals.rise)},
-        {"fall", toJson(found.totals.fall)}}}};
-  if (found.totals.stable) json["surface"]["bare_ground"] = toJson(*found.totals.stable);
-  if (found.plant_height) json["plant_height"] = toJson(*found.plant_height, "median", "_m");
-  if (found.cover) json["cover"] = toJson(*found.cover, "mean", "");
+      {"frame_error",
+       {{"height_m", found.compared.frames.height}, {"plane_m", found.compared.frames.plane}}}};
+  json["surface"] =
+      found.compared.flat ? ordered_json(nullptr) : surfaceJson(found.compared.totals);
+  if (found.compared.plant_height)
+    json["plant_height"] = toJson(*found.compared.plant_height, "median", "_m");
+  if (found.compared.cover) json["cover"] = toJson(*found.compared.cover, "mean", "");
   return json;
 }
 
-std::vector<report::ChangeFact> describe(const MapChange& found) {
-  const change::Totals& totals = found.totals;
+namespace {
+
+std::vector<report::ChangeFact> describe(const change::Totals& totals) {
   const auto centimetres = [](double metres) { return rounded(100.0 * metres, 1) + " cm"; };
   const auto average = [&](const change::Share& share) {
     return fmt::format("by {} +- {} on average", rounded(100.0 * share.mean(), 1),
@@ -132,42 +146,69 @@ std::vector<report::ChangeFact> describe(const MapChange& found) {
     lines.push_back({"bare ground",
                      fmt::format("{:.1f} m2, {}", totals.stable->area, average(*totals.stable))});
   }
-  if (found.plant_height && found.plant_height->cells > 0) {
+  return lines;
+}
+
+/// The cover's change in place of a surface's; no level is known of it.
+change::HeightChange coverChange(const MapChange& found) {
+  const Raster<float>& change = found.compared.cover->change;
+  return {change, Raster<float>(change.rows(), change.cols()),
+          Raster<float>(change.rows(), change.cols(), 1.0F)};
+}
+
+void writeHeights(const io::OutputPath& dir, const MapChange& found) {
+  writeBands(dir, "height_change", found,
+             {{&found.compared.heights.change, "change", "m"},
+              {&found.compared.heights.detection, "level of detection", "m"},
+              {&found.compared.heights.significant, "significant", ""}},
+             change::reachOf(found.compared.heights.change));
+}
+
+}  // namespace
+
+std::vector<report::ChangeFact> describe(const MapChange& found) {
+  const auto centimetres = [](double metres) { return rounded(100.0 * metres, 1) + " cm"; };
+  std::vector<report::ChangeFact> lines;
+  if (!found.compared.flat) lines = describe(found.compared.totals);
+  if (found.compared.plant_height && found.compared.plant_height->cells > 0) {
     lines.push_back({"plants", fmt::format("{} high before, {} after (median)",
-                                           centimetres(found.plant_height->before),
-                                           centimetres(found.plant_height->after))});
+                                           centimetres(found.compared.plant_height->before),
+                                           centimetres(found.compared.plant_height->after))});
   }
-  if (found.cover) {
-    lines.push_back(
-        {"cover", fmt::format("{:.1f} % before, {:.1f} % after", 100.0 * found.cover->before,
-                              100.0 * found.cover->after)});
+  if (found.compared.cover) {
+    lines.push_back({"cover", fmt::format("{:.1f} % before, {:.1f} % after",
+                                          100.0 * found.compared.cover->before,
+                                          100.0 * found.compared.cover->after)});
   }
   return lines;
 }
 
 void writeChange(const io::OutputPath& dir, const MapChange& found, const ChangeRun& run) {
-  writeBands(dir / "height_change.tif", found,
-             {{&found.heights.change, "change", "m"},
-              {&found.heights.detection, "level of detection", "m"},
-              {&found.heights.significant, "significant", ""}});
-  if (found.plant_height) {
-    writeBands(dir / "plant_height_change.tif", found,
-               {{&found.plant_height->change, "change", "m"}});
+  if (!found.compared.flat) writeHeights(dir, found);
+  if (found.compared.plant_height) {
+    const Raster<float>& heights = found.compared.plant_height->change;
+    writeBands(dir, "plant_height_change", found, {{&heights, "change", "m"}},
+               change::reachOf(heights));
   }
-  if (found.cover) {
-    writeBands(dir / "cover_change.tif", found, {{&found.cover->change, "change", ""}});
+  if (found.compared.cover) {
+    writeBands(dir, "cover_change", found, {{&found.compared.cover->change, "change", ""}}, 1.0);
   }
   io::writeText(dir / "change.json", toJson(found).dump(2) + "\n");
+  writeZones(dir, found.zones, found.ground.crs);
   writePage(dir / "change.html", found, run);
   if (!run.pictures) return;
   std::vector<std::string> facts;
   for (const report::ChangeFact& line : describe(found)) {
     facts.push_back(fmt::format("{}: {}", line.label, line.text));
   }
+  const change::HeightChange drawn =
+      found.compared.flat ? coverChange(found) : found.compared.heights;
   report::writeChangePicture(
       dir / "change.png",
-      {found.heights, found.ground.frame,
-       fmt::format("{} (before) and {} (after)", found.name_a, found.name_b), facts});
+      {drawn, found.ground.frame,
+       fmt::format("{} (before) and {} (after)", found.name_a, found.name_b), facts,
+       found.compared.flat ? "change of the cover [%]" : "change of the surface [cm]",
+       !found.compared.flat});
 }
 
 }  // namespace agricolmap

@@ -7,43 +7,39 @@
 #include <string>
 #include <vector>
 
-#include "agricolmap/change/totals.hpp"
+#include "agricolmap/change/comparison.hpp"
 #include "agricolmap/io/output/output_path.hpp"
+#include "agricolmap/io/vector/vector_layer.hpp"
 #include "agricolmap/report/page/change_page.hpp"
 #include "change_maps.hpp"
 
 namespace agricolmap {
-
-/// Of another layer that both maps have.
-struct LayerChange {
-  report::LayerTimes times;
-  Raster<float> change;  ///< b − a, NaN where one has none
-  /// What the two values are of: all that both maps have, for heights only where both have plants
-  /// on more than half of the cell, if they say where plants are.
-  std::size_t cells = 0;
-  double before = 0.0;  ///< median of heights [m], mean of covers
-  double after = 0.0;
-};
 
 /// Everything that was found between two maps.
 struct MapChange {
   std::string name_a;
   std::string name_b;
   CommonGround ground;
-  change::FrameError frames;
-  change::HeightChange heights;
-  change::Totals totals;
-  report::LayerTimes surface;
+  change::Comparison compared;
+  change::LayerTimes surface;       ///< without rasters of flat maps
   report::ColourMap colour_before;  ///< without rasters unless it is asked for
   report::ColourMap colour_after;
-  std::optional<LayerChange> plant_height;
-  std::optional<LayerChange> cover;
+  std::vector<io::VectorLayer> zones;  ///< see changeByZones
 };
 
 /// Names of all files that a run may write.
-inline const std::vector<std::string> kChangeFiles = {
-    "height_change.tif", "plant_height_change.tif", "cover_change.tif", "change.json", "change.png",
-    "change.html"};
+inline const std::vector<std::string> kChangeFiles = {"height_change.tif",
+                                                      "plant_height_change.tif",
+                                                      "cover_change.tif",
+                                                      "height_change.qml",
+                                                      "plant_height_change.qml",
+                                                      "cover_change.qml",
+                                                      "change.json",
+                                                      "change.png",
+                                                      "change.html",
+                                                      "change.gpkg",
+                                                      "plots.csv",
+                                                      "grid.csv"};
 
 nlohmann::ordered_json toJson(const MapChange& found);
 /// The totals in words.

@@ -39,9 +39,9 @@ ChangeMap::ChangeMap(const std::string& name, const std::optional<GivenError>& e
     : name_(name), error_(error) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) folder_ = report::readSharedMap(name);
-  shape_ = io::readLayerShape(surfaceFile());
+  shape_ = io::readLayerShape(flat() ? layerFile("cover") : surfaceFile());
   io::checkMetres(shape_.name, placeOf(shape_));
-  if (!error_ && !(folder_ && folder_->layer("error"))) {
+  if (!flat() && !error_ && !(folder_ && folder_->layer("error"))) {
     throw UsageError(fmt::format(
         "{}: nothing is known of its errors; say which RMS is expected of its heights and places, "
         "in metres: {} HEIGHT PLANE",
@@ -49,15 +49,12 @@ ChangeMap::ChangeMap(const std::string& name, const std::optional<GivenError>& e
   }
 }
 
-fs::path ChangeMap::surfaceFile() const {
-  if (!folder_) return name_;
-  if (const auto file = folder_->layer("surface")) return *file;
-  if (folder_->flat) {
-    throw InputError(fmt::format(
-        "{}: the clouds of this map have no heights, so that none can have changed", name_));
-  }
+fs::path ChangeMap::surfaceFile() const { return folder_ ? layerFile("surface") : fs::path(name_); }
+
+fs::path ChangeMap::layerFile(const char* layer) const {
+  if (const auto file = folder_->layer(layer)) return *file;
   throw InputError(fmt::format(
-      "{}: has no layer layers/surface.tif; make the map anew with agricolmap fuse", name_));
+      "{}: has no layer layers/{}.tif; make the map anew with agricolmap fuse", name_, layer));
 }
 
 ChangeMap::Part ChangeMap::partFor(const GridFrame& grid, const Eigen::Vector3d& origin) const {
@@ -158,8 +155,8 @@ report::ColourMap ChangeMap::coloursOn(const GridFrame& grid, const Eigen::Vecto
 
 CommonGround commonGroundOf(const ChangeMap& a, const ChangeMap& b,
                             std::vector<std::string>& warnings) {
-  const io::LayerShape& one = a.surfaceShape();
-  const io::LayerShape& other = b.surfaceShape();
+  const io::LayerShape& one = a.shape();
+  const io::LayerShape& other = b.shape();
   if (const auto warning = io::checkSameCrs(one.name, placeOf(one), other.name, placeOf(other))) {
     warnings.push_back(*warning);
   }

@@ -25,18 +25,21 @@ struct GivenError {
 class ChangeMap {
  public:
   /// `error` counts instead of the map's layer `error`; `flag`: how it is given, for messages.
-  /// Throws InputError for what cannot be used, UsageError when nothing is known of its errors.
+  /// Throws InputError for what cannot be used, UsageError when nothing is known of the errors of
+  /// its heights.
   ChangeMap(const std::string& name, const std::optional<GivenError>& error, const char* flag);
 
   const std::string& name() const { return name_; }
-  const io::LayerShape& surfaceShape() const { return shape_; }
+  /// Whether its clouds have no heights, and it no surface: greenness alone is known then.
+  bool flat() const { return folder_ && folder_->flat; }
+  /// Of its surface, of a flat map its cover.
+  const io::LayerShape& shape() const { return shape_; }
   const std::optional<report::StoredMap>& folder() const { return folder_; }
-  std::filesystem::path surfaceFile() const;
 
   /// Its colours, in its own cells where these lie on `grid`, about `origin`; without rasters where
   /// the map has none.
   report::ColourMap coloursOn(const GridFrame& grid, const Eigen::Vector3d& origin) const;
-  /// All of it on `grid`, which is about `origin` and within this map.
+  /// Its heights on `grid`, which is about `origin` and within this map; not of a flat map.
   change::MapHeights heightsOn(const GridFrame& grid, const Eigen::Vector3d& origin,
                                std::vector<std::string>& warnings) const;
   /// One of its other layers; nothing where the map has none of that name.
@@ -48,6 +51,8 @@ class ChangeMap {
     io::CellWindow window;
     GridFrame frame;  ///< of the window, about the grid's origin
   };
+  std::filesystem::path surfaceFile() const;
+  std::filesystem::path layerFile(const char* layer) const;
   Part partFor(const GridFrame& grid, const Eigen::Vector3d& origin) const;
   void requireOwnGrid(const std::filesystem::path& file) const;
   Raster<float> surfaceIn(const io::CellWindow& window, std::vector<std::string>& warnings) const;
@@ -56,7 +61,7 @@ class ChangeMap {
   std::string name_;
   std::optional<GivenError> error_;
   std::optional<report::StoredMap> folder_;  ///< nothing for a file
-  io::LayerShape shape_;                     ///< of its surface
+  io::LayerShape shape_;
 };
 
 /// What two maps are compared on.

@@ -13,8 +13,8 @@
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/report/json/registration_file.hpp"
+#include "agricolmap/run/pair_files.hpp"
 #include "common.hpp"
-#include "pair_files.hpp"
 
 namespace agricolmap {
 namespace {
@@ -53,7 +53,7 @@ std::vector<Job> jobsOf(const ApplyArguments& arguments) {
     const io::CloudFormat own = io::formatOf(cloud);
     Job job{cloud, own, fs::path(cloud).filename()};
     if (own == io::CloudFormat::kXyz) job.format = io::CloudFormat::kPly;
-    if (arguments.format != "auto") job.format = formatNamed("--format", arguments.format);
+    if (arguments.format != "auto") job.format = run::formatNamed("--format", arguments.format);
     const auto named = io::formatByEnding(job.name);
     // LAZ that is called so may be COPC, whose order the result does not have.
     if (named != job.format) {
@@ -156,7 +156,7 @@ io::CopiedCloud apply(const Job& job, const report::StoredRegistration& run,
 }
 
 ExitCode runApply(const ApplyArguments& arguments, const Globals& globals) {
-  if (arguments.format != "auto") formatNamed("--format", arguments.format);
+  if (arguments.format != "auto") run::formatNamed("--format", arguments.format);
   const report::StoredRegistration run = report::readRegistration(arguments.run);
   checkUsable(run, arguments);
   const std::vector<Job> jobs = jobsOf(arguments);

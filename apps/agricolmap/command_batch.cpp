@@ -5,24 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 
-#include "agricolmap/batch/memory.hpp"
-#include "agricolmap/batch/picture/summary_page.hpp"
+#include "agricolmap/batch/run/batch_run.hpp"
 #include "agricolmap/batch/summary.hpp"
 #include "agricolmap/core/interrupt.hpp"
-#include "agricolmap/io/output/file_sink.hpp"
-#include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/io/text/text.hpp"
-#include "batch_run.hpp"
-#include "register_run.hpp"
+#include "common.hpp"
 
 namespace agricolmap {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
-constexpr double kShareOfMemory = 0.8;  ///< of what is available
 
 struct BatchArguments {
   std::string manifest;
@@ -44,7 +37,7 @@ std::size_t countOf(std::string_view text) {
 }
 
 /// Strips of a part of the manifest: every n-th from the i-th on.
-std::vector<std::size_t> shardOf(const std::string& text, std::size_t strips) {
+std::vector<std::size_t> shardOf(const std::string& text, const batch::Manifest& manifest) {
   const std::size_t slash = text.find('/');
   const std::size_t part = countOf(std::string_view(text).substr(0, slash));
   const std::size_t parts =
@@ -52,24 +45,7 @@ std::vector<std::size_t> shardOf(const std::string& text, std::size_t strips) {
   if (part == 0 || parts == 0 || part > parts) {
     throw UsageError(fmt::format("--shard {}: must be i/n, such as 3/8: i from 1 to n", text));
   }
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = part - 1; i < strips; i += parts) chosen.push_back(i);
-  return chosen;
-}
-
-/// An id, or a number counted from 1.
-std::size_t itemOf(const std::string& text, const batch::Manifest& manifest) {
-  const auto found = std::find_if(manifest.strips.begin(), manifest.strips.end(),
-                                  [&](const batch::Strip& strip) { return strip.id == text; });
-  if (found != manifest.strips.end()) {
-    return static_cast<std::size_t>(found - manifest.strips.begin());
-  }
-  const std::size_t number = countOf(text);
-  if (number >= 1 && number <= manifest.strips.size()) return number - 1;
-  throw UsageError(
-      fmt::format("--item {}: is neither the id of a strip of {} nor a number from 1 "
-                  "to {}; --list names them",
-                  text, manifest.file.string(), manifest.strips.size()));
+  return batch::shardOf(manifest, part, parts);
 }
 
 std::vector<std::size_t> chosenStrips(const BatchArguments& arguments,
@@ -77,64 +53,85 @@ std::vector<std::size_t> chosenStrips(const BatchArguments& arguments,
   if (!arguments.items.empty() && !arguments.shard.empty()) {
     throw UsageError("--item and --shard do not go together");
   }
-  if (!arguments.shard.empty()) return shardOf(arguments.shard, manifest.strips.size());
-  std::vector<std::size_t> chosen;
-  for (const std::string& item : arguments.items) chosen.push_back(itemOf(item, manifest));
-  std::sort(chosen.begin(), chosen.end());
-  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-  if (!arguments.items.empty()) return chosen;
-  chosen.resize(manifest.strips.size());
-  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  return chosen;
+  if (!arguments.shard.empty()) return shardOf(arguments.shard, manifest);
+  if (arguments.items.empty()) return batch::allStrips(manifest);
+  return batch::stripsCalled(arguments.items, manifest, "--item", "; --list names them");
 }
 
-BatchOptions optionsOf(const BatchArguments& arguments) {
-  BatchOptions options;
+batch::RunOptions optionsOf(const BatchArguments& arguments, const Globals& globals) {
+  batch::RunOptions options;
   options.output = arguments.output;
   options.resume = arguments.resume;
+  options.overwrite = globals.overwrite;
   options.pictures = !arguments.no_pictures;
-  options.jobs = arguments.jobs > 0 ? static_cast<std::size_t>(arguments.jobs) : threadsInForce();
-  options.memory = arguments.memory > 0.0
-                       ? arguments.memory * kGiB
-                       : kShareOfMemory * batch::availableMemory() + batch::memoryInUse();
+  options.jobs = static_cast<std::size_t>(std::max(0, arguments.jobs));
+  options.memory = arguments.memory * kGiB;
+  options.threads = globals.threads;
+  options.version = AGRICOLMAP_VERSION;
+  options.stop = globals.stop;
   return options;
 }
 
-void writeWhole(const fs::path& path, const std::string& text) {
-  io::StagedFile file(path, true);
-  io::writeText(file.path(), text);
-  file.commit();
-}
-
-/// summary.csv, .json and .html, and the picture.
-void writeSummary(const Batch& batch, const batch::Manifest& manifest, const fs::path& folder,
-                  double seconds) {
-  std::vector<batch::Record> records;
-  for (const StripOutcome& outcome : batch.outcomes()) {
-    if (outcome.record) records.push_back(*outcome.record);
+/// What is said while it works.
+class Talk {
+ public:
+  Talk(const batch::Manifest& manifest, const Globals& globals)
+      : globals_(globals), progress_(globals) {
+    constexpr std::size_t kWidestId = 40;
+    for (const batch::Strip& strip : manifest.strips) {
+      id_width_ = std::clamp(strip.id.size(), id_width_, kWidestId);
+    }
   }
-  writeWhole(folder / "summary.csv", batch::csvOf(records));
-  writeWhole(folder / "summary.json", batch::jsonOf(records, manifest, seconds));
-  writeWhole(folder / "summary.html", batch::summaryPage(records, manifest, seconds));
-  if (batch.grounds().empty()) return;
-  io::StagedFile picture(folder / "summary.png", true);
-  batch::writeSummaryPicture(picture.path(), batch.grounds(), records);
-  picture.commit();
-}
+  /// For as long as this lives.
+  batch::Listener listener() {
+    batch::Listener listener;
+    listener.on_kept = [this](std::size_t kept, std::size_t of) {
+      if (!globals_.quiet) fmt::print("{} of {} strips are done already\n", kept, of);
+    };
+    listener.on_map = [this](const std::string& map) { progress_.step("map " + map); };
+    listener.on_points = progress_.ofPasses();
+    listener.on_map_warnings = printWarnings;
+    listener.on_detail = [](const std::string& strip, const std::string& text) {
+      spdlog::debug("{}: {}", strip, text);
+    };
+    listener.on_strip = [this](const batch::Record& record, const batch::Progress& progress) {
+      strip(record, progress);
+    };
+    return listener;
+  }
 
-ExitCode exitCodeFor(const std::vector<const StripOutcome*>& outcomes) {
+ private:
+  void strip(const batch::Record& record, const batch::Progress& progress) {
+    if (!globals_.quiet) {
+      progress_.clear();
+      fmt::print("{}\n", batch::lineOf(record, id_width_));
+      std::fflush(stdout);
+    }
+    const double each = progress.seconds / static_cast<double>(progress.worked);
+    const auto left = static_cast<double>(progress.todo - progress.worked);
+    progress_.step(fmt::format("{} of {} strips, {:.1f} s each, {:.0f} min left", progress.worked,
+                               progress.todo, each, each * left / 60.0));
+  }
+
+  const Globals& globals_;
+  Progress progress_;
+  std::size_t id_width_ = 0;
+};
+
+ExitCode exitCodeFor(const std::vector<const batch::StripOutcome*>& outcomes) {
   batch::Counts counts;
-  for (const StripOutcome* outcome : outcomes) counts.add(*outcome->record);
+  for (const batch::StripOutcome* outcome : outcomes) counts.add(*outcome->record);
   if (counts.failed > 0) {
-    return outcomes.size() == 1 ? outcomes.front()->code : ExitCode::kSomeFailed;
+    return outcomes.size() == 1 ? exitCodeOf(outcomes.front()->error) : ExitCode::kSomeFailed;
   }
   if (counts.rejected > 0) return ExitCode::kRejected;
   return counts.ambiguous > 0 ? ExitCode::kAmbiguous : ExitCode::kOk;
 }
 
-void sayInterrupted(const Batch& batch, std::size_t of) {
-  const auto done = std::count_if(batch.outcomes().begin(), batch.outcomes().end(),
-                                  [](const StripOutcome& one) { return one.record.has_value(); });
+void sayInterrupted(const batch::Batch& batch, std::size_t of) {
+  const auto done =
+      std::count_if(batch.outcomes().begin(), batch.outcomes().end(),
+                    [](const batch::StripOutcome& one) { return one.record.has_value(); });
   spdlog::warn(
       "interrupted; {} of {} strips are done: the same command with --resume does the rest", done,
       of);
@@ -156,10 +153,12 @@ ExitCode runBatch(const BatchArguments& arguments, const Globals& globals) {
     requirePictures(!strip.settings.pictures);
   }
   requirePictures(arguments.no_pictures);
-  const BatchOptions options = optionsOf(arguments);
+  const batch::RunOptions options = optionsOf(arguments, globals);
   const bool whole = arguments.items.empty() && arguments.shard.empty();
   const Stopwatch watch;
-  Batch batch(manifest, options, globals);
+  Talk talk(manifest, globals);
+  const batch::Listener listener = talk.listener();
+  batch::Batch batch(manifest, options, listener);
   try {
     batch.run(chosen, whole && options.pictures);
     throwIfInterrupted();
@@ -167,8 +166,8 @@ ExitCode runBatch(const BatchArguments& arguments, const Globals& globals) {
     sayInterrupted(batch, chosen.size());
     return ExitCode::kInterrupted;
   }
-  if (whole) writeSummary(batch, manifest, options.output, watch.seconds());
-  std::vector<const StripOutcome*> outcomes;
+  if (whole) batch.writeSummary(watch.seconds());
+  std::vector<const batch::StripOutcome*> outcomes;
   batch::Counts counts;
   for (const std::size_t i : chosen) {
     outcomes.push_back(&batch.outcomes()[i]);

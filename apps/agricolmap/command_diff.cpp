@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "agricolmap/core/robust.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "change_files.hpp"
+#include "change_zones.hpp"
 #include "common.hpp"
 
 namespace agricolmap {
@@ -23,6 +22,7 @@ struct DiffArguments {
   std::vector<double> error_a;
   std::vector<double> error_b;
   std::vector<double> frame_error;
+  ZonesAsked zones;
   bool no_pictures = false;
 };
 
@@ -31,62 +31,42 @@ std::optional<GivenError> givenError(const std::vector<double>& values) {
   return GivenError{.height = values[0], .plane = values[1]};
 }
 
-enum class Summary { kMedian, kMean };
-
-double summaryOf(std::vector<float>& values, Summary summary) {
-  if (values.empty()) return 0.0;
-  if (summary == Summary::kMedian) return static_cast<double>(median(values));
-  double sum = 0.0;
-  for (const float value : values) sum += static_cast<double>(value);
-  return sum / static_cast<double>(values.size());
-}
-
-/// Nothing where one of the maps has no such layer.
-std::optional<report::LayerTimes> readPair(const char* layer, const ChangeMap& a,
-                                           const ChangeMap& b, const CommonGround& ground) {
-  auto before = a.layerOn(layer, ground.frame, ground.origin);
-  auto after = b.layerOn(layer, ground.frame, ground.origin);
-  if (!before || !after) return std::nullopt;
-  return report::LayerTimes{*std::move(before), *std::move(after)};
-}
-
-/// `among`: the cells that the summary is of; nullptr: all.
-LayerChange changeOf(report::LayerTimes times, Summary summary, const Raster<std::uint8_t>* among) {
-  LayerChange found{std::move(times), {}};
-  const report::LayerTimes& pair = found.times;
-  found.change = Raster<float>(pair.before.rows(), pair.before.cols());
-  std::vector<float> before;
-  std::vector<float> after;
-  for (std::size_t i = 0; i < found.change.size(); ++i) {
-    found.change[i] = pair.after[i] - pair.before[i];
-    if (std::isnan(found.change[i]) || (among != nullptr && (*among)[i] == 0)) continue;
-    before.push_back(pair.before[i]);
-    after.push_back(pair.after[i]);
-  }
-  found.cells = before.size();
-  found.before = summaryOf(before, summary);
-  found.after = summaryOf(after, summary);
-  return found;
-}
-
-/// 1 where more than half of the cell is vegetation in both maps.
-Raster<std::uint8_t> plantsIn(const report::LayerTimes& covers) {
-  Raster<std::uint8_t> plants(covers.before.rows(), covers.before.cols());
-  for (std::size_t i = 0; i < plants.size(); ++i) {
-    plants[i] = covers.before[i] > 0.5F && covers.after[i] > 0.5F ? 1 : 0;
-  }
-  return plants;
-}
-
 /// What two drone's maps lie apart is in no map's errors.
 void warnOfFrames(const ChangeMap& a, const ChangeMap& b, bool given,
                   std::vector<std::string>& warnings) {
-  if (given || !a.folder() || !b.folder()) return;
+  if (given || a.flat() || b.flat() || !a.folder() || !b.folder()) return;
   if (a.folder()->hasFixedOf(*b.folder())) return;
   warnings.push_back(fmt::format(
       "{} and {} do not hang on one drone map, and what two of them lie apart is in neither's "
       "errors; say what is expected of it, in metres: --frame-error HEIGHT PLANE",
       a.name(), b.name()));
+}
+
+/// Greenness is then all that can be compared.
+bool withoutHeights(const ChangeMap& a, const ChangeMap& b, std::vector<std::string>& warnings) {
+  if (!a.flat() && !b.flat()) return false;
+  for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    if (!one->folder()) {
+      throw InputError(
+          fmt::format("{} is a surface, and {} has no heights: they have nothing in common",
+                      one->name(), other->name()));
+    }
+    if (one->flat() && !other->flat()) {
+      warnings.push_back(one->name() + ": has no heights, so only greenness is compared");
+    }
+  }
+  return true;
+}
+
+/// All that is compared of a map, on the common grid.
+change::MapLayers layersOf(const ChangeMap& map, const CommonGround& ground, bool flat,
+                           std::vector<std::string>& warnings) {
+  const GridFrame& grid = ground.frame;
+  change::MapLayers layers{flat ? change::noHeights(grid)
+                                : map.heightsOn(grid, ground.origin, warnings)};
+  layers.cover = map.layerOn("cover", grid, ground.origin);
+  if (!flat) layers.plant_height = map.layerOn("plant_height", grid, ground.origin);
+  return layers;
 }
 
 MapChange compare(const DiffArguments& arguments, Progress& progress,
@@ -96,53 +76,32 @@ MapChange compare(const DiffArguments& arguments, Progress& progress,
   MapChange found;
   found.name_a = arguments.map_a;
   found.name_b = arguments.map_b;
+  const bool flat = withoutHeights(a, b, warnings);
   found.ground = commonGroundOf(a, b, warnings);
   warnOfFrames(a, b, !arguments.frame_error.empty(), warnings);
-  if (const auto frames = givenError(arguments.frame_error)) {
-    found.frames = {.plane = frames->plane, .height = frames->height};
-  }
+  const auto frames = givenError(arguments.frame_error).value_or(GivenError{});
   const GridFrame& grid = found.ground.frame;
-  const Eigen::Vector3d& origin = found.ground.origin;
   progress.step("reading the maps");
-  change::MapHeights heights_a = a.heightsOn(grid, origin, warnings);
-  change::MapHeights heights_b = b.heightsOn(grid, origin, warnings);
-  std::optional<Raster<std::uint8_t>> bare;
-  std::optional<Raster<std::uint8_t>> planted;
-  if (auto covers = readPair("cover", a, b, found.ground)) {
-    bare = change::bareGround(covers->before, covers->after);
-    planted = plantsIn(*covers);
-    found.cover = changeOf(*std::move(covers), Summary::kMean, nullptr);
-  }
-  if (auto plants = readPair("plant_height", a, b, found.ground)) {
-    found.plant_height =
-        changeOf(*std::move(plants), Summary::kMedian, planted ? &*planted : nullptr);
-  }
+  change::MapLayers before = layersOf(a, found.ground, flat, warnings);
+  change::MapLayers after = layersOf(b, found.ground, flat, warnings);
   if (!arguments.no_pictures) {
-    found.colour_before = a.coloursOn(grid, origin);
-    found.colour_after = b.coloursOn(grid, origin);
+    found.colour_before = a.coloursOn(grid, found.ground.origin);
+    found.colour_after = b.coloursOn(grid, found.ground.origin);
   }
   progress.step("comparing them");
-  found.heights = change::heightChange(heights_a, heights_b, grid.cell, found.frames);
-  found.totals = change::totalsOf(found.heights, heights_a, heights_b, grid.cell, found.frames,
-                                  bare ? &*bare : nullptr);
-  if (found.totals.compared.cells == 0) {
-    throw InputError(
-        fmt::format("{} and {} have no cell in common of which both know the surface and its error",
-                    arguments.map_a, arguments.map_b));
+  found.compared = change::compareMaps(std::move(before), std::move(after), grid.cell,
+                                       {.plane = frames.plane, .height = frames.height}, flat);
+  if (found.compared.comparedCells() == 0) {
+    throw InputError(fmt::format("{} and {} have no cell in common of which both know {}",
+                                 arguments.map_a, arguments.map_b,
+                                 flat ? "the cover" : "the surface and its error"));
   }
-  found.surface = {std::move(heights_a.surface), std::move(heights_b.surface)};
+  found.zones = changeByZones(arguments.zones, found);
+  if (!flat) {
+    found.surface = {std::move(found.compared.before.surface),
+                     std::move(found.compared.after.surface)};
+  }
   return found;
-}
-
-/// Ground that should not have moved, and moved by more than is expected.
-void warnOfBareGround(const MapChange& found, std::vector<std::string>& warnings) {
-  const auto& bare = found.totals.stable;
-  if (!bare || bare->cells == 0) return;
-  if (std::abs(bare->mean()) <= change::kLevel95 * bare->meanDeviation()) return;
-  warnings.push_back(fmt::format(
-      "bare ground changed by {:.1f} cm on average, and no more than {:.1f} cm is expected: it was "
-      "worked, or the maps lie further apart than their errors say (--frame-error)",
-      100.0 * bare->mean(), 100.0 * change::kLevel95 * bare->meanDeviation()));
 }
 
 ExitCode runDiff(const DiffArguments& arguments, const Globals& globals) {
@@ -153,7 +112,9 @@ ExitCode runDiff(const DiffArguments& arguments, const Globals& globals) {
   {
     Progress progress(globals);
     found = compare(arguments, progress, warnings);
-    warnOfBareGround(*found, warnings);
+    if (const auto moved = change::bareGroundWarning(found->compared.totals); !moved.empty()) {
+      warnings.push_back(moved + " (--frame-error)");
+    }
     progress.step("writing");
     writeChange(output.folder(), *found,
                 {!arguments.no_pictures, output.directory(), warnings, globals.command_line});
@@ -178,13 +139,21 @@ CommandSlot addDiffCommand(CLI::App& app, const Globals& globals) {
   command->add_option("MAP_B", arguments->map_b, "The map after")->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
   const auto error = [&](const char* flag, std::vector<double>& values, const char* help) {
-    command->add_option(flag, values, help)->expected(2)->check(CLI::Range(0.0, 100.0));
+    command->add_option(flag, values, help)
+        ->expected(2)
+        ->check(CLI::Range(0.0, change::kMostError));
   };
   error("--error-a", arguments->error_a,
         "Expected RMS of the heights, and of the places, of MAP_A [m]; instead of its own");
   error("--error-b", arguments->error_b, "The same of MAP_B");
   error("--frame-error", arguments->frame_error,
         "Expected RMS between the frames of both maps, as of two flights: heights, places [m]");
+  command->add_option("--plots", arguments->zones.plots,
+                      "Polygons to compare in, too: GeoPackage, GeoJSON, shapefile, ...");
+  command
+      ->add_option("--grid", arguments->zones.grid,
+                   "Side of squares to compare in, too, on round coordinates [m]")
+      ->check(CLI::Range(change::kLeastSquare, change::kMostSquare));
   command->add_flag("--no-pictures", arguments->no_pictures, "Draw no picture");
   return {command, [arguments, &globals] { return runDiff(*arguments, globals); }};
 }

@@ -12,12 +12,13 @@
 #include "agricolmap/fuse/cloud_file.hpp"
 #include "agricolmap/fuse/layer_files.hpp"
 #include "agricolmap/io/output/file_sink.hpp"
+#include "agricolmap/report/gis/layer_styles.hpp"
 #include "agricolmap/report/page/shared_map_page.hpp"
 #include "agricolmap/report/pictures/shared_map_picture.hpp"
+#include "agricolmap/run/pair_files.hpp"
 #include "common.hpp"
 #include "fuse_sources.hpp"
 #include "option_flags.hpp"
-#include "pair_files.hpp"
 
 namespace agricolmap {
 namespace {
@@ -38,7 +39,7 @@ std::optional<io::CloudFormat> cloudFormat(const std::string& name) {
   if (name == "auto") {
     return storedFormat() == io::CloudFormat::kLas ? io::CloudFormat::kLas : io::CloudFormat::kCopc;
   }
-  const io::CloudFormat format = formatNamed("--cloud-format", name);
+  const io::CloudFormat format = run::formatNamed("--cloud-format", name);
   if (io::isLas(format)) return format;
   throw UsageError(
       fmt::format("--cloud-format {}: the fused cloud is las, laz, copc or none; "
@@ -88,8 +89,9 @@ report::MapFacts writeMap(const io::SwappedFolder& folder, const MapPlan& plan,
   facts.fixed = plan.fixed;
   for (const MapStrip& strip : plan.strips) facts.strips.push_back(strip.source);
   progress.step("write layers");
-  facts.layers = fuse::writeLayers([&](const std::string& name) { return folder.path(name); }, map,
-                                   pointsOf(clouds), options, clouds.crs);
+  const auto place = [&](const std::string& name) { return folder.path(name); };
+  facts.layers = fuse::writeLayers(place, map, pointsOf(clouds), options, clouds.crs);
+  report::writeMapStyles(place, map);
   if (!format) return facts;
   progress.step("write cloud");
   facts.cloud = "cloud." + io::endingOf(*format);

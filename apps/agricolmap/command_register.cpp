@@ -7,16 +7,15 @@
 #include "agricolmap/config/yaml.hpp"
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
+#include "agricolmap/run/register_run.hpp"
 #include "common.hpp"
-#include "pair_files.hpp"
 #include "register_options.hpp"
-#include "register_run.hpp"
 
 namespace agricolmap {
 namespace {
 
 struct RegisterArguments {
-  PairFiles files;
+  run::PairFiles files;
   std::string output;
   std::string prior;
   std::string path;
@@ -25,6 +24,34 @@ struct RegisterArguments {
   bool no_pictures = false;
   RegisterOptions options;
 };
+
+ExitCode exitCodeOf(verdict::Status status) {
+  switch (status) {
+    case verdict::Status::kAccepted:
+      return ExitCode::kOk;
+    case verdict::Status::kAmbiguous:
+      return ExitCode::kAmbiguous;
+    case verdict::Status::kRejected:
+      break;
+  }
+  return ExitCode::kRejected;
+}
+
+/// FIXED and MOVING, and what is said of them.
+void addFlags(run::PairFiles& files, CLI::App& command) {
+  command.add_option("FIXED", files.fixed,
+                     "The wide map: LAS, LAZ, PLY, PCD, lines of text, or ORTHO.tif,DSM.tif");
+  command.add_option("MOVING", files.moving, "The map to be moved: the same");
+  command.add_option("--fixed-crs", files.fixed_crs,
+                     "Coordinate system of FIXED: EPSG:32632, WKT or a file with it. Default: what "
+                     "the file or a .prj beside it says, else that of MOVING");
+  command.add_option("--moving-crs", files.moving_crs,
+                     "The same of MOVING; brought to that of FIXED");
+  command.add_option(
+      "--aligned-format", files.aligned,
+      "Format of the aligned cloud: ply, pcd, las, laz, copc, or auto: las or laz as MOVING is, "
+      "else ply [auto]");
+}
 
 void printSummary(const pipeline::Registration& result, const std::string& directory) {
   fmt::print("{}\n", headline(result.verdict));
@@ -55,28 +82,31 @@ ExitCode runRegister(const RegisterArguments& arguments, const Globals& globals)
   if (arguments.files.fixed.empty() || arguments.files.moving.empty() || arguments.output.empty()) {
     throw UsageError("register needs FIXED, MOVING and -o DIR; see agricolmap register --help");
   }
-  arguments.files.check();
+  if (arguments.files.aligned != "auto") {
+    run::formatNamed("--aligned-format", arguments.files.aligned);
+  }
   requirePictures(arguments.no_pictures);
   // First of all, so that the work does not end at a folder that cannot be written.
   io::StagedOutput output(arguments.output, globals.overwrite);
   Progress progress(globals);
   Monitor monitor(globals.stop, [&](Stage stage) { progress.step(nameOf(stage)); });
-  RegisterRun run;
-  run.files = arguments.files;
-  run.prior = arguments.prior;
-  run.path = arguments.path;
-  run.keep_rejected = arguments.keep_rejected;
-  run.pictures = !arguments.no_pictures;
-  run.preset = arguments.options.preset();
-  run.options = options;
-  run.command_line = commandText(globals.command_line);
-  run.threads = globals.threads;
-  const FixedSource fixed = [&](const io::MapFiles& files, const io::CommonFrame& frame) {
-    return streamedFixed(files, frame, progress.ofPasses());
+  run::RegisterRun asked;
+  asked.files = arguments.files;
+  asked.prior = arguments.prior;
+  asked.path = arguments.path;
+  asked.keep_rejected = arguments.keep_rejected;
+  asked.pictures = !arguments.no_pictures;
+  asked.preset = arguments.options.preset();
+  asked.options = options;
+  asked.version = AGRICOLMAP_VERSION;
+  asked.command_line = run::commandText(globals.command_line);
+  asked.threads = globals.threads;
+  const run::FixedSource fixed = [&](const io::MapFiles& files, const io::CommonFrame& frame) {
+    return run::streamedFixed(files, frame, progress.ofPasses());
   };
   const pipeline::Registration result =
-      registerInto(run, fixed, output, monitor, printWarnings).registration;
-  output.commit(staleResults());
+      run::registerInto(asked, fixed, output, monitor, printWarnings).registration;
+  output.commit(run::staleResults());
   if (!globals.quiet) printSummary(result, arguments.output);
   return exitCodeOf(result.verdict.status);
 }
@@ -87,7 +117,7 @@ CommandSlot addRegisterCommand(CLI::App& app, const Globals& globals) {
   auto arguments = std::make_shared<RegisterArguments>();
   CLI::App* command = app.add_subcommand(
       "register", "Find the transformation that lays MOVING (UGV) into FIXED (UAV)");
-  arguments->files.addTo(*command);
+  addFlags(arguments->files, *command);
   command->add_option("-o,--output", arguments->output, "Folder for the results");
   command->add_option("--prior", arguments->prior,
                       "Initial guess: 4x4 text, row-major, moving -> fixed file coordinates. "

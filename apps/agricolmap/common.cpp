@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "agricolmap/io/text/matrix_file.hpp"
-#include "agricolmap/io/text/offset_file.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 
 namespace agricolmap {
@@ -75,6 +73,8 @@ std::string flagsFor(Remedy remedy) {
       return " (--row-heading, --window, --seed)";
     case Remedy::kWindow:
       return " (--window)";
+    case Remedy::kResumeOrOverwrite:
+      return " (--resume, --overwrite)";
     case Remedy::kNone:
       break;
   }
@@ -101,38 +101,6 @@ void warnOfLostCrs(const std::string& file, io::CloudFormat format, const Crs& c
   if (io::isLas(format) || crs.wkt.empty()) return;
   spdlog::warn("{}: {} has no place for the coordinate system, {}; say it where the file is used",
                file, io::endingOf(format), crs.name);
-}
-
-Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
-                             const std::filesystem::path& moving, const std::string& prior_file,
-                             std::string& source, const Say& say) {
-  if (!prior_file.empty()) {
-    source = prior_file;
-    return io::readMatrix(prior_file);
-  }
-  const auto world_from_fixed = io::readOffsetBeside(fixed);
-  const auto world_from_moving = io::readOffsetBeside(moving);
-  for (const std::filesystem::path& cloud : {fixed, moving}) {
-    for (const std::string& file : io::offsetsPassedBy(cloud)) {
-      say({fmt::format(
-          "{} is passed by: were it the offset of {}, it would be called {}.offset.xyz", file,
-          cloud.string(), cloud.stem().string())});
-    }
-  }
-  if (!world_from_fixed && !world_from_moving) {
-    source = "coordinates as they stand";
-    return Eigen::Affine3d::Identity();
-  }
-  source = "offset.xyz";
-  const Eigen::Affine3d identity = Eigen::Affine3d::Identity();
-  if (!world_from_fixed || !world_from_moving) {
-    say({fmt::format("only {} has an offset.xyz; {} is taken to be in world coordinates already",
-                     (world_from_fixed ? fixed : moving).string(),
-                     (world_from_fixed ? moving : fixed).string())});
-    source = "offset.xyz of one cloud";
-  }
-  return world_from_fixed.value_or(identity).inverse(Eigen::Isometry) *
-         world_from_moving.value_or(identity);
 }
 
 }  // namespace agricolmap

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -94,17 +93,7 @@ void requirePictures(bool no_pictures);
 std::string wayTo(const std::filesystem::path& page, const std::filesystem::path& folder);
 /// To stderr, one line each, unless --quiet.
 void printWarnings(const std::vector<std::string>& warnings);
-/// Hears what the user should know, as it is found.
-using Say = std::function<void(const std::vector<std::string>&)>;
-
 /// Warns where a file of this format has no place for the coordinate system.
 void warnOfLostCrs(const std::string& file, io::CloudFormat format, const Crs& crs);
-
-/// Moving file → fixed file coordinates: `prior_file` if given; else from the offset.xyz beside
-/// each cloud (one that has none stands in world coordinates); else identity. Says which in
-/// `source`.
-Eigen::Affine3d initialGuess(const std::filesystem::path& fixed,
-                             const std::filesystem::path& moving, const std::string& prior_file,
-                             std::string& source, const Say& say);
 
 }  // namespace agricolmap

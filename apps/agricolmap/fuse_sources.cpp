@@ -15,8 +15,8 @@
 #include "agricolmap/io/las/las_writer.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/report/json/registration_file.hpp"
+#include "agricolmap/run/pair_files.hpp"
 #include "common.hpp"
-#include "pair_files.hpp"
 
 namespace agricolmap {
 namespace {
@@ -48,7 +48,7 @@ std::map<std::string, std::int32_t> datesOf(const std::vector<std::string>& text
 
 /// The cloud that `register` laid, in one of the formats that it writes.
 fs::path alignedIn(const std::string& run) {
-  for (const std::string& name : alignedNames()) {
+  for (const std::string& name : run::alignedNames()) {
     std::error_code ignored;
     if (fs::is_regular_file(fs::path(run) / name, ignored)) return fs::path(run) / name;
   }
@@ -210,6 +210,7 @@ MapClouds openClouds(const FuseFiles& files, MapPlan& plan, const io::SwappedFol
   clouds.crs = frame.crs.wkt.empty() ? plan.crs : frame.crs;
   io::StreamOptions options;
   options.read.map = frame.fixed.get();
+  options.read.marks = true;
   options.crs = clouds.crs;
   clouds.fixed = io::streamMap(fixed, options);
   plan.fixed.points = clouds.fixed->facts().points;
@@ -225,6 +226,7 @@ MapClouds openClouds(const FuseFiles& files, MapPlan& plan, const io::SwappedFol
     }
     io::StreamOptions of_strip;
     of_strip.crs = clouds.crs;
+    of_strip.read.marks = true;
     // Read from the folder that is being made, so that an update sees what the first run saw.
     clouds.strips.push_back(io::streamCloud(folder.path(strip.source.file).file(), of_strip));
     strip.source.points = clouds.strips.back()->facts().points;

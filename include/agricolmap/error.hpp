@@ -28,6 +28,7 @@ enum class Remedy {
   kSurfaceModel,
   kRowHeading,
   kWindow,
+  kResumeOrOverwrite,
 };
 
 /// Base of all errors thrown on purpose. `what()` names the place and the remedy.

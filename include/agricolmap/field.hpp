@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -38,6 +39,18 @@ AGRICOLMAP_EXPORT LaidStrip laidStrip(const std::string& name, const Cloud& movi
 /// What a map says of every cell of a field. Values are row-major, row 0 is the southernmost; NaN
 /// where nothing is known.
 struct FieldMap {
+  /// What a strip shows in cells of its own, where it owns those of the map; NaN elsewhere.
+  struct Fine {
+    int rows = 0;
+    int cols = 0;
+    double cell_m = 0.0;
+    /// (column, row, surface or ground [m]) → file coordinates [m], as the map's.
+    Transform file_from_cell = Transform::Identity();
+    std::vector<float> plant_height_m;
+    std::vector<float> excess_green;
+    std::vector<float> cover;
+    std::vector<float> density;  ///< points per m²
+  };
   /// A strip in it.
   struct Strip {
     std::string name;
@@ -45,6 +58,15 @@ struct FieldMap {
     Eigen::Vector3d moved_m = Eigen::Vector3d::Zero();  ///< to agree with strips that overlap it
     double seen_m2 = 0.0;
     double owned_m2 = 0.0;  ///< what it has in the map
+    Fine fine;              ///< without cells where that is nothing
+  };
+
+  /// What the fixed cloud is known by: maps of one hang on one frame.
+  struct Source {
+    std::string name;
+    std::uint64_t points = 0;
+    int date = 0;  ///< YYYYMMDD; 0: nobody said
+    bool operator==(const Source&) const = default;
   };
 
   int rows = 0;
@@ -66,6 +88,7 @@ struct FieldMap {
   std::vector<std::uint16_t> source;  ///< 0 nothing, 1 the fixed cloud, else a strip's
   std::vector<std::int32_t> date;     ///< YYYYMMDD; 0: nobody said
   bool has_heights = true;            ///< else the layers of heights are all NaN
+  Source fixed;                       ///< that the strips lie in
   std::vector<Strip> strips;
   std::vector<std::string> warnings;
 };
@@ -81,6 +104,10 @@ AGRICOLMAP_EXPORT FieldMap fuseClouds(const Cloud& fixed, const std::vector<Laid
                                       const Settings& options = {}, const Control& control = {},
                                       int fixed_date = 0);
 
+/// Component gdal. A map as the command line's `fuse` wrote it, by its folder. Surface and ground
+/// are above sea level; layers that it does not have are NaN. Throws InputError.
+AGRICOLMAP_EXPORT FieldMap readFieldMap(const std::filesystem::path& folder);
+
 /// A polygon of the file's coordinates and what it is called.
 struct Plot {
   std::string name;
@@ -95,8 +122,8 @@ struct CropFacts {
     double weeds = 0.0;       ///< share of what is between rows that is under weeds
     std::size_t patches = 0;  ///< of weeds
     double row_length_m = 0.0;
-    double plants = 0.0;      ///< counted, and one per spacing where they cannot be told apart
-    double plants_low = 0.0;  ///< by what is doubtful of each plant; not calibrated
+    double plants = 0.0;      ///< expected, and one per spacing where they cannot be told apart
+    double plants_low = 0.0;  ///< hold the truth nine times in ten, on simulated fields
     double plants_high = 0.0;
     std::size_t counted = 0;   ///< plants told apart
     double uncounted_m = 0.0;  ///< of the rows, where they cannot be
@@ -156,7 +183,8 @@ AGRICOLMAP_EXPORT std::vector<OptionInfo> factsOptions();
 AGRICOLMAP_EXPORT CropFacts cropFacts(const Cloud& cloud, const Settings& options = {},
                                       const std::vector<Plot>& plots = {},
                                       const Control& control = {});
-/// The same of a map, in its cells.
+/// The same of a map, in its cells, and in those of its strips where they are finer: as the command
+/// line counts.
 AGRICOLMAP_EXPORT CropFacts cropFacts(const FieldMap& map, const Settings& options = {},
                                       const std::vector<Plot>& plots = {},
                                       const Control& control = {});

@@ -87,6 +87,10 @@ struct Registration {
     std::string words;         ///< the same in plain words
     double deviation_m = 0.0;  ///< of the height, bias included; infinite without heights
     double bias_m = 0.0;       ///< part of it that all of the cloud has in common
+    /// Metres up in the fixed cloud for one in the moving one, where the relief of the ground tells
+    /// it; the transformation follows it where it is clearly not 1.
+    std::optional<double> vertical_scale;
+    double vertical_scale_deviation = 0.0;  ///< of that; 0 without
   };
 
   /// Another place where the moving cloud fits.

@@ -5,7 +5,7 @@
 
 namespace agricolmap {
 
-/// Version of the library that runs, e.g. "0.1.0".
+/// Version of the library that runs, e.g. "1.0.0".
 AGRICOLMAP_EXPORT const char* version();
 
 }  // namespace agricolmap

@@ -11,6 +11,7 @@ that end in ``_deg``. Transformations are 4×4, ``fixed = transform @ moving``.
 
 from . import _core
 from ._arrays import PathLike
+from ._change import BeforeAfter, Change, ChangedSquare, PartChange, Share, diff
 from ._cloud import Cloud, CloudLike, Crs, read
 from ._errors import Error, InputError, Interrupted, OutputError, UsageError
 from ._facts import (
@@ -24,7 +25,8 @@ from ._facts import (
     facts,
     facts_options,
 )
-from ._field import FieldMap, FusedStrip, Strip, fuse, fuse_options
+from ._field import FieldMap, FineCells, FusedStrip, Strip, fuse, fuse_options
+from ._many import BatchEntry, batch
 from ._maps import CellMap, map_cloud
 from ._options import OptionInfo, Options, Prior
 from ._register import Stop, register
@@ -47,7 +49,11 @@ __version__ = _core.version()
 
 __all__ = [
     "Alternative",
+    "BatchEntry",
+    "BeforeAfter",
     "CellMap",
+    "Change",
+    "ChangedSquare",
     "Cloud",
     "CloudLike",
     "CropFacts",
@@ -56,6 +62,7 @@ __all__ = [
     "Error",
     "Evidence",
     "FieldMap",
+    "FineCells",
     "FusedStrip",
     "Gaps",
     "Heights",
@@ -66,6 +73,7 @@ __all__ = [
     "Options",
     "OutputError",
     "Pair",
+    "PartChange",
     "Parts",
     "PathLike",
     "Place",
@@ -73,6 +81,7 @@ __all__ = [
     "Prior",
     "Registration",
     "Row",
+    "Share",
     "Slip",
     "Square",
     "Stand",
@@ -84,6 +93,8 @@ __all__ = [
     "Weeds",
     "__version__",
     "aligned",
+    "batch",
+    "diff",
     "facts",
     "facts_options",
     "fuse",

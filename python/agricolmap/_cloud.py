@@ -246,3 +246,11 @@ def pair_of(fixed: Any, moving: Any) -> Tuple[Cloud, Cloud]:
         return cloud_of(fixed, "fixed"), cloud_of(moving, "moving")
     pair = _gdal.read_pair(_file_text(fixed, "fixed"), "", _file_text(moving, "moving"), "")
     return Cloud._of(pair[0]), Cloud._of(pair[1])
+
+
+def kept(given: Tuple[Any, Any], clouds: Tuple[Cloud, Cloud]) -> Tuple[Any, Any]:
+    """What `pair_of` makes the same clouds of again: of files their names, which take no memory."""
+    first, second = (
+        value if _is_file(value) else cloud for value, cloud in zip(given, clouds)
+    )
+    return first, second

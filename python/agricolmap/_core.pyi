@@ -115,6 +115,8 @@ def map_cloud(
 
 class FieldMap:
     def values(self) -> Dict[str, Any]: ...
+    @property
+    def crs(self) -> Crs: ...
 
 def fuse_options() -> List[OptionInfo]: ...
 def facts_options() -> List[OptionInfo]: ...
@@ -135,6 +137,19 @@ def facts(
     source: Union[Cloud, FieldMap],
     settings: List[Tuple[str, str]],
     plots: List[Tuple[str, _Floats]],
+    stop: Optional[Any],
+    threads: int,
+    /,
+) -> Dict[str, Any]: ...
+
+def diff(
+    map_a: FieldMap,
+    map_b: FieldMap,
+    errors: Tuple[
+        Optional[Tuple[float, float]], Optional[Tuple[float, float]], Optional[Tuple[float, float]]
+    ],
+    plots: List[Tuple[str, _Floats]],
+    grid: float,
     stop: Optional[Any],
     threads: int,
     /,

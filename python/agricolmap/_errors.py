@@ -9,6 +9,7 @@ _HINTS = {
     "narrower_guess": "options={'prior': {'translation': 5, 'scale_unknown': False}}, "
     "or 'association': 'correlation'",
     "overwrite": "overwrite=True",
+    "resume_or_overwrite": "resume=True, overwrite=True",
 }
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
-from ._arrays import Bytes, Floats
+from ._arrays import Bytes, Floats, PathLike
 from ._cloud import Cloud, CloudLike, Crs, cloud_of
 from ._errors import UsageError
 from ._maps import Cells
@@ -69,6 +69,32 @@ class Strip:
         return cls(name, Cloud._of(handle), plane, height, limited, date)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class FineCells(Cells):
+    """What a strip shows in cells of its own, finer than the map's, where it owns those.
+
+    Row 0 is the southernmost. Floats are NaN where the strip shows nothing, or another has the cell.
+
+    Attributes:
+        plant_height_m: rows×columns float32, above the map's ground [m].
+        excess_green: rows×columns float32, chromatic.
+        cover: rows×columns float32, 0 to 1.
+        density: rows×columns float32, points per m².
+        cell_m: side of a cell [m].
+        file_from_cell: 4×4, (column, row, height above the map's zero [m], 1) → file coordinates
+            [m]. Corners of cells are whole numbers.
+        crs: what the file coordinates mean.
+    """
+
+    plant_height_m: Singles
+    excess_green: Singles
+    cover: Singles
+    density: Singles
+    cell_m: float
+    file_from_cell: Floats
+    crs: Crs = Crs()
+
+
 @dataclass(frozen=True, eq=False)
 class FusedStrip:
     """What became of a strip.
@@ -79,6 +105,7 @@ class FusedStrip:
         moved_m: (3,), to agree with strips that overlap it [m].
         seen_m2: what it saw [m²].
         owned_m2: what it has in the map [m²].
+        fine: that in its own cells; None where it has nothing.
     """
 
     name: str
@@ -86,6 +113,7 @@ class FusedStrip:
     moved_m: Floats
     seen_m2: float
     owned_m2: float
+    fine: Optional[FineCells] = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -133,6 +161,37 @@ class FieldMap(Cells):
     file_from_cell: Floats
     crs: Crs = Crs()
     _handle: Optional[_core.FieldMap] = None
+
+    @classmethod
+    def read(cls, folder: PathLike) -> "FieldMap":
+        """A map as ``agricolmap fuse`` wrote it, by its folder.
+
+        Layers that it does not have are NaN. Surface and ground are as high as the files say.
+
+        Raises:
+            InputError: for what is no such map, or a damaged one.
+            UsageError: in a build without GDAL.
+        """
+        text = _arrays.path_of(folder, "folder")
+        try:
+            from . import _gdal
+        except ImportError:
+            raise UsageError(
+                "folder: this build has no GDAL, which maps on the disk need (AGRICOLMAP_WITH_GDAL)"
+            ) from None
+        handle = _gdal.read_field_map(text)
+        return cls._of(handle, Crs(handle.crs.name, handle.crs.wkt))
+
+    @classmethod
+    def _of(cls, handle: _core.FieldMap, crs: Crs) -> "FieldMap":
+        values = handle.values()
+        strips = []
+        for name, source, moved, seen, owned, fine in values["strips"]:
+            cells = None if fine is None else FineCells(**fine, crs=crs)
+            strips.append(FusedStrip(name, source, moved, seen, owned, cells))
+        values["strips"] = tuple(strips)
+        values["warnings"] = tuple(values["warnings"])
+        return cls(**values, crs=crs, _handle=handle)
 
 
 def fuse_options() -> List[OptionInfo]:
@@ -188,10 +247,7 @@ def fuse(
         stop,
         _arrays.count(threads, "threads"),
     )
-    values = handle.values()
-    values["strips"] = tuple(FusedStrip(*strip) for strip in values["strips"])
-    values["warnings"] = tuple(values["warnings"])
-    return FieldMap(**values, crs=cloud.crs, _handle=handle)
+    return FieldMap._of(handle, cloud.crs)
 
 
 def _day(value: Date, argument: str) -> int:
@@ -205,3 +261,25 @@ def _day(value: Date, argument: str) -> int:
     except ValueError:
         raise UsageError(f"{argument}: is {value!r}; give a datetime.date or YYYYMMDD") from None
     return int(value)
+
+
+def map_handle(value: Any, argument: str) -> _core.FieldMap:
+    """What the library knows a map by; a folder is read."""
+    if _arrays.is_path(value):
+        value = FieldMap.read(value)
+    handle = value._handle if isinstance(value, FieldMap) else None
+    if handle is None:
+        raise UsageError(f"{argument}: is no map that fuse returned, and no folder of one")
+    return handle
+
+
+def corners(plots: Optional[Mapping[str, npt.ArrayLike]]) -> List[Tuple[str, Floats]]:
+    """Polygons by name, each N×2 corners in file coordinates [m]."""
+    needs = "three corners or more as x, y in metres, shape (N, 2)"
+    named = []
+    for name, value in (plots or {}).items():
+        array = _arrays.numbers(value, f"plots[{name!r}]", needs)
+        if array.ndim != 2 or array.shape[1] != 2 or len(array) < 3:
+            raise UsageError(f"plots[{name!r}]: has shape {array.shape}; give {needs}")
+        named.append((name, np.ascontiguousarray(array, dtype=np.float64)))
+    return named

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, PathLike
-from ._cloud import CloudLike, pair_of
+from ._cloud import CloudLike, kept, pair_of
 from ._errors import UsageError
 from ._options import Options, options_of
 from ._result import Registration, registration_of
@@ -74,7 +74,9 @@ def register(
     handle = _core.register(
         first._handle, second._handle, affine, chosen._handle, places, progress, stop, at_most
     )
-    return registration_of(handle, first.crs, warnings)
+    return registration_of(
+        handle, first.crs, warnings, kept((fixed, moving), (first, second))
+    )
 
 
 def _path(path: Any) -> Floats:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, PathLike
-from ._cloud import Cloud, CloudLike, Crs, cloud_of
+from ._cloud import Cloud, CloudLike, Crs, cloud_of, pair_of
 from ._errors import OutputError, UsageError
 from ._maps import CellMap, map_of
 
@@ -165,6 +165,9 @@ class Heights:
         words: the same in plain words.
         deviation_m: of the height, bias included; infinite without heights [m].
         bias_m: part of it that all of the cloud has in common [m].
+        vertical_scale: metres up in the fixed cloud for one in the moving one; None where the relief of the
+            ground does not tell it. ``parts.scale_z`` follows it where it is clearly not 1.
+        vertical_scale_deviation: of that; 0 without.
     """
 
     measured: bool
@@ -172,6 +175,8 @@ class Heights:
     words: str
     deviation_m: float
     bias_m: float
+    vertical_scale: Optional[float]
+    vertical_scale_deviation: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,6 +231,7 @@ class Registration:
     warnings: Tuple[str, ...]
     crs: Crs
     _handle: _core.Registration
+    _clouds: Tuple[Any, Any]
 
     @property
     def accepted(self) -> bool:
@@ -283,19 +289,23 @@ class Registration:
     def write_report(
         self, folder: PathLike, *, pictures: bool = True, overwrite: bool = False
     ) -> List[str]:
-        """Writes registration.json and pictures of what was compared and found.
+        """Writes registration.json, pictures of what was compared and found, and report.html.
+
+        Clouds that were given as files are read again for the page.
 
         Args:
             folder: made where it is not there.
-            pictures: PNG files beside the report.
+            pictures: PNG files beside the report, maps and points in the page; else this has words
+                and numbers only.
             overwrite: replace a report that is there.
 
         Returns:
-            Names of the files in the folder.
+            Names of the files in the folder. A build without pictures writes no page.
 
         Raises:
             OutputError: when they cannot be written.
-            UsageError: for pictures in a build without them.
+            InputError: when a cloud's file cannot be read any more.
+            UsageError: for pictures in a build without them, and when a file holds another cloud now.
         """
         place = _arrays.path_of(folder, "folder")
         report = os.path.join(place, "registration.json")
@@ -305,18 +315,27 @@ class Registration:
             os.makedirs(place, exist_ok=True)
         except OSError as error:
             raise OutputError(f"{place}: cannot be made: {error.strerror}") from None
-        names = self._write_pictures(place) if pictures else []
-        self._handle.write_report(place, names)
+        names = self._write_pictures(place, pictures)
+        self._handle.write_report(place, [name for name in names if name.endswith(".png")])
         return ["registration.json", *names]
 
-    def _write_pictures(self, folder: str) -> List[str]:
+    def _write_pictures(self, folder: str, drawn: bool) -> List[str]:
+        """And the page, which has them, too."""
         try:
             from . import _pictures
         except ImportError:
+            if not drawn:
+                return []
             raise UsageError(
                 "pictures: this build has none (AGRICOLMAP_WITH_PICTURES); say pictures=False"
             ) from None
-        return _pictures.write_pictures(folder, self._handle)
+        if not drawn:
+            _pictures.write_page(folder, self._handle, [], None, None)
+            return ["report.html"]
+        fixed, moving = pair_of(*self._clouds)
+        names = _pictures.write_pictures(folder, self._handle)
+        _pictures.write_page(folder, self._handle, names, fixed._handle, moving._handle)
+        return [*names, "report.html"]
 
     def __str__(self) -> str:
         return "\n  ".join([str(self.status), *self.reasons])
@@ -331,7 +350,10 @@ class Registration:
         )
 
 
-def registration_of(handle: _core.Registration, crs: Crs, more_warnings: List[str]) -> Registration:
+def registration_of(
+    handle: _core.Registration, crs: Crs, more_warnings: List[str], clouds: Tuple[Any, Any]
+) -> Registration:
+    """`clouds`: those that were registered, or their files: see `kept`."""
     values = handle.values()
     bend = values["deformation"]
     if bend is not None:
@@ -363,4 +385,5 @@ def registration_of(handle: _core.Registration, crs: Crs, more_warnings: List[st
         warnings=(*more_warnings, *values["warnings"]),
         crs=crs,
         _handle=handle,
+        _clouds=clouds,
     )

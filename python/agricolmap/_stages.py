@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, PathLike
-from ._cloud import CloudLike, pair_of
+from ._cloud import CloudLike, kept, pair_of
 from ._errors import UsageError
 from ._maps import CellMap, map_of
 from ._options import Options, options_of
@@ -65,6 +65,7 @@ class Pair:
         affine, self._warnings = guess_of(guess, fixed, moving)
         first, second = pair_of(fixed, moving)
         self._crs = first.crs
+        self._clouds = kept((fixed, moving), (first, second))
         self._handle = _core.make_pair(
             first._handle, second._handle, affine, chosen._handle, stop, self._threads
         )
@@ -95,7 +96,7 @@ class Pair:
         Of a single one nothing is known of rivals; decoys are looked for all the same.
         """
         handle = self._handle.judge(_scored(places), self._stop, self._threads)
-        return registration_of(handle, self._crs, self._warnings)
+        return registration_of(handle, self._crs, self._warnings, self._clouds)
 
 
 def _scored(places: Iterable[PlaceLike]) -> List[Tuple[Floats, float]]:

@@ -41,6 +41,7 @@ Colours arrayOf(const std::vector<Rgb>& colours, py::ssize_t rows, py::ssize_t c
 /// All that a map has, by name.
 py::dict mapValuesOf(const CellMap& map);
 
+void bindChange(py::module_& module);
 void bindClouds(py::module_& module);
 void bindField(py::module_& module);
 void bindMaps(py::module_& module);

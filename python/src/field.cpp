@@ -1,18 +1,16 @@
 // Maps of a field, and what stands on it.
-#include <pybind11/stl.h>
-
 #include <agricolmap/field.hpp>
 #include <algorithm>
 #include <memory>
 
 #include "bindings.hpp"
+#include "field_values.hpp"
 #include "waiting.hpp"
 
 namespace agricolmap::python {
 namespace {
 
 using Stand = CropFacts::Stand;
-using Corners = py::array_t<double, py::array::c_style>;  ///< N×2
 
 py::dict valuesOf(const Stand& stand) {
   py::dict values;
@@ -119,6 +117,19 @@ py::dict valuesOf(const CropFacts& facts) {
   return values;
 }
 
+py::object valuesOf(const FieldMap::Fine& fine) {
+  if (fine.rows == 0) return py::none();
+  const std::vector<py::ssize_t> shape{fine.rows, fine.cols};
+  py::dict values;
+  values["plant_height_m"] = python::arrayOf(fine.plant_height_m, shape);
+  values["excess_green"] = python::arrayOf(fine.excess_green, shape);
+  values["cover"] = python::arrayOf(fine.cover, shape);
+  values["density"] = python::arrayOf(fine.density, shape);
+  values["cell_m"] = fine.cell_m;
+  values["file_from_cell"] = python::arrayOf(fine.file_from_cell);
+  return values;
+}
+
 py::dict valuesOf(const FieldMap& map) {
   const std::vector<py::ssize_t> shape{map.rows, map.cols};
   py::dict values;
@@ -139,22 +150,11 @@ py::dict valuesOf(const FieldMap& map) {
   py::list strips;
   for (const FieldMap::Strip& strip : map.strips) {
     strips.append(py::make_tuple(strip.name, strip.source, python::arrayOf(strip.moved_m),
-                                 strip.seen_m2, strip.owned_m2));
+                                 strip.seen_m2, strip.owned_m2, valuesOf(strip.fine)));
   }
   values["strips"] = strips;
   values["warnings"] = map.warnings;
   return values;
-}
-
-std::vector<Plot> plotsOf(const std::vector<std::pair<std::string, Corners>>& named) {
-  std::vector<Plot> plots;
-  for (const auto& [name, corners] : named) {
-    Plot& plot = plots.emplace_back(Plot{name, {}});
-    for (py::ssize_t i = 0; i < corners.shape(0); ++i) {
-      plot.corners.emplace_back(corners.at(i, 0), corners.at(i, 1));
-    }
-  }
-  return plots;
 }
 
 /// Name, cloud in the fixed one's coordinates, errors in the plane and in height, whether heights
@@ -175,8 +175,7 @@ std::shared_ptr<FieldMap> fuse(const std::shared_ptr<Cloud>& fixed, const std::v
 
 template <typename Source>
 py::dict facts(const std::shared_ptr<Source>& source, const Settings& settings,
-               const std::vector<std::pair<std::string, Corners>>& named, const py::object& stop,
-               int threads) {
+               const NamedPlots& named, const py::object& stop, int threads) {
   const std::vector<Plot> plots = plotsOf(named);
   return valuesOf(waitFor({py::none(), stop}, threads, [&](const Control& control) {
     return cropFacts(*source, settings, plots, control);
@@ -185,9 +184,21 @@ py::dict facts(const std::shared_ptr<Source>& source, const Settings& settings,
 
 }  // namespace
 
+std::vector<Plot> plotsOf(const NamedPlots& named) {
+  std::vector<Plot> plots;
+  for (const auto& [name, corners] : named) {
+    Plot& plot = plots.emplace_back(Plot{name, {}});
+    for (py::ssize_t i = 0; i < corners.shape(0); ++i) {
+      plot.corners.emplace_back(corners.at(i, 0), corners.at(i, 1));
+    }
+  }
+  return plots;
+}
+
 void bindField(py::module_& module) {
   py::class_<FieldMap, std::shared_ptr<FieldMap>>(module, "FieldMap")
-      .def("values", [](const FieldMap& map) { return valuesOf(map); });
+      .def("values", [](const FieldMap& map) { return valuesOf(map); })
+      .def_readonly("crs", &FieldMap::crs);
   module.def("fuse_options", &fuseOptions);
   module.def("facts_options", &factsOptions);
   module.def("laid_strip", [](const Cloud& moving, const Registration& registration) {

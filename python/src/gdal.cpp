@@ -2,6 +2,7 @@
 // hundred libraries.
 #include <pybind11/stl.h>
 
+#include <agricolmap/field.hpp>
 #include <agricolmap/io.hpp>
 #include <memory>
 
@@ -24,6 +25,10 @@ PYBIND11_MODULE(_gdal, module) {
   module.def("read_beside", [](const agricolmap::Crs& frame, const std::string& path) {
     const py::gil_scoped_release release;
     return std::make_shared<agricolmap::Cloud>(agricolmap::readBeside(frame, {path}));
+  });
+  module.def("read_field_map", [](const std::string& folder) {
+    const py::gil_scoped_release release;
+    return std::make_shared<agricolmap::FieldMap>(agricolmap::readFieldMap(folder));
   });
   module.def("read_map",
              [](const std::string& path, const std::string& crs, const std::string& target) {

@@ -44,6 +44,8 @@ const char* nameOf(Remedy remedy) {
       return "row_heading";
     case Remedy::kWindow:
       return "window";
+    case Remedy::kResumeOrOverwrite:
+      return "resume_or_overwrite";
     case Remedy::kNone:
       break;
   }
@@ -115,4 +117,5 @@ PYBIND11_MODULE(_core, module) {
   python::bindMaps(module);
   python::bindStages(module);
   python::bindField(module);
+  python::bindChange(module);
 }

@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <agricolmap/report.hpp>
+#include <memory>
 
 #include "bindings.hpp"
 
@@ -16,4 +17,16 @@ PYBIND11_MODULE(_pictures, module) {
                const py::gil_scoped_release release;
                return agricolmap::writePictures(folder, registration);
              });
+  module.def(
+      "write_page",
+      [](const std::filesystem::path& folder, const agricolmap::Registration& registration,
+         const std::vector<std::string>& pictures, const std::shared_ptr<agricolmap::Cloud>& fixed,
+         const std::shared_ptr<agricolmap::Cloud>& moving) {
+        const py::gil_scoped_release release;
+        if (fixed && moving) {
+          agricolmap::writePage(folder, registration, pictures, *fixed, *moving);
+        } else {
+          agricolmap::writePage(folder, registration, pictures);
+        }
+      });
 }

@@ -72,6 +72,8 @@ py::object heightsOf(const Result& result) {
   made["words"] = heights.words;
   made["deviation_m"] = heights.deviation_m;
   made["bias_m"] = heights.bias_m;
+  made["vertical_scale"] = heights.vertical_scale;
+  made["vertical_scale_deviation"] = heights.vertical_scale_deviation;
   return made;
 }
 

@@ -91,6 +91,7 @@ auto waitFor(const Follower& follower, int threads, const Work& work) {
   control.stop = stop.get_token();
   control.on_stage = [&](std::string_view stage) { desk.enter(stage); };
   control.threads = threads;
+  follower.hear({});  // what is short may be done before anybody looks
   const py::gil_scoped_release release;
   auto result = std::async(std::launch::async, [&] {
     struct Finally {

@@ -1,6 +1,7 @@
 """Simulated pairs of clouds, and registrations that several tests look at."""
 
 import os
+import subprocess
 from pathlib import Path
 
 import agricolmap
@@ -33,6 +34,30 @@ def guess(pairs):
 def result(drone, robot, guess):
     """An accepted registration."""
     return agricolmap.register(drone, robot, guess)
+
+
+@pytest.fixture(scope="session")
+def program():
+    """Runs the program."""
+
+    def run(*words):
+        subprocess.run(
+            [os.environ["AGRICOLMAP_PROGRAM"], *map(str, words)], check=True, capture_output=True
+        )
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def folders(pairs, program, tmp_path_factory):
+    """Two maps of one drone's cloud as the program writes them, of two strips and of a third."""
+    pytest.importorskip("agricolmap._gdal", reason="a build without GDAL")
+    place = tmp_path_factory.mktemp("maps")
+    drone = pairs / "strips/uav/point_cloud.ply"
+    for name, numbers in (("before", (1, 2)), ("after", (3,))):
+        strips = [pairs / f"runs/strip_{number}" for number in numbers]
+        program("fuse", drone, *strips, "-o", place / name, "--no-pictures")
+    return place / "before", place / "after"
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import dataclasses
 import datetime
+import json
 import threading
 
 import agricolmap
@@ -136,6 +137,42 @@ def test_maps_have_facts_too(map_):
     facts = agricolmap.facts(map_, {"grid": 5})
     assert 0.4 < facts.row_spacing_m < 0.6 and facts.squares[0].side_m == 5
     assert 100 < facts.total.area_m2 < 250
+
+
+def counts(facts):
+    total = facts.total
+    return total.plants, total.counted, total.gaps, total.cover, len(facts.plants.row)
+
+
+def test_maps_have_the_facts_of_the_program(program, tmp_path):
+    """Where strips are, in their finer cells."""
+    pytest.importorskip("agricolmap._gdal", reason="a build without GDAL")
+    program(
+        *("simulate", "--crop", "sugar_beet_10m", "--field.plant-size", 0.6, "--field.width", 9),
+        *("--field.height", 9, "--ugv.length", 3, "--seed", 104, "--no-pictures"),
+        *("-o", tmp_path / "beets"),
+    )
+    drone, robot = (tmp_path / "beets" / name / "point_cloud.ply" for name in ("uav", "ugv"))
+    program("register", drone, robot, "-o", tmp_path / "strip", "--no-pictures")
+    program("fuse", drone, tmp_path / "strip", "-o", tmp_path / "map", "--no-pictures")
+    program("facts", tmp_path / "map", "-o", tmp_path / "facts", "--no-pictures")
+    said = json.loads((tmp_path / "facts/facts.json").read_text())["total"]
+    read = agricolmap.FieldMap.read(tmp_path / "map")
+    assert [strip.name for strip in read.strips] == ["strip"]
+    fine = read.strips[0].fine
+    assert fine.cell_m < read.cell_m and fine.plant_height_m.shape == fine.shape
+    shown = np.isfinite(fine.excess_green).sum() * fine.cell_m**2
+    assert 0.5 * read.strips[0].owned_m2 < shown <= 1.01 * read.strips[0].owned_m2
+    facts = agricolmap.facts(read)
+    assert facts.total.counted == said["plants"]["counted"] > 100
+    assert facts.total.plants == said["plants"]["estimate"]
+    assert facts.total.gaps == said["gaps"]["count"]
+    assert facts.total.cover == said["cover"]
+    assert counts(agricolmap.facts(tmp_path / "map")) == counts(facts)
+    # The same clouds, fused here: the program's went through a file of whole millimetres.
+    strip = Strip.of("strip", robot, agricolmap.register(drone, robot))
+    fused = agricolmap.facts(agricolmap.fuse(drone, [strip]))
+    assert fused.total.counted == pytest.approx(facts.total.counted, rel=0.02)
 
 
 def test_facts_say_why_there_are_none(flat, map_):

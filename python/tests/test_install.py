@@ -32,9 +32,8 @@ def test_the_component_has_the_package_and_nothing_else(tmp_path):
         check=True,
     )
     files = [file for file in (tmp_path / "lib").rglob("*") if file.is_file()]
-    assert [file.name for file in (tmp_path / "share").rglob("*") if file.is_file()] == [
-        "copyright"
-    ]
+    documents = sorted(file.name for file in (tmp_path / "share").rglob("*") if file.is_file())
+    assert documents == ["changelog.gz", "copyright"]
     assert files and all(file.parent.name == "agricolmap" for file in files)
     names = {file.name.split(".")[0] for file in files}
     assert {"__init__", "_core", "py"} <= names

@@ -3,6 +3,8 @@
 import json
 import os
 import pickle
+import re
+import shutil
 import subprocess
 
 import agricolmap
@@ -19,6 +21,8 @@ def test_all_parts_are_there(result):
     assert np.linalg.eigvalsh(covariance).min() > 0
     assert result.heights.measured and result.heights.deviation_m < 0.045
     assert result.heights.words and not result.heights.limit
+    scale = result.heights.vertical_scale  # the ground of the pair is flat
+    assert scale is None or abs(scale - 1.0) < 3.0 * result.heights.vertical_scale_deviation
     assert 0 < result.evidence.agreeing_blocks <= result.evidence.blocks
     assert np.linalg.norm(result.parts.shift_m) > 0.5
     assert list(result.times)[0] == "level" and min(result.times.values()) >= 0
@@ -97,18 +101,67 @@ def test_a_map_of_one_cloud_lies_where_the_cloud_does(flat):
 def test_reports_and_pictures_are_written(result, tmp_path):
     pytest.importorskip("agricolmap._pictures", reason="a build without pictures")
     names = result.write_report(tmp_path / "new")
-    assert names[0] == "registration.json" and "overlay_after.png" in names
+    assert (names[0], names[-1]) == ("registration.json", "report.html")
+    assert "overlay_after.png" in names
     assert all((tmp_path / "new" / name).stat().st_size > 500 for name in names)
     report = json.loads((tmp_path / "new/registration.json").read_text())
-    assert report["pictures"] == names[1:]
+    assert report["pictures"] == names[1:-1]
     assert report["transform"]["matrix"] == result.transform.tolist()
     assert {**report, "pictures": []} == result.report()
     with pytest.raises(agricolmap.OutputError, match="exists already.*overwrite=True"):
         result.write_report(tmp_path / "new")
-    assert result.write_report(tmp_path / "new", pictures=False, overwrite=True) == names[:1]
+    again = result.write_report(tmp_path / "new", pictures=False, overwrite=True)
+    assert again == ["registration.json", "report.html"]
     (tmp_path / "file").write_text("")
     with pytest.raises(agricolmap.OutputError, match="file"):
         result.write_report(tmp_path / "file" / "inside")
+
+
+def page_data(page, name):
+    """What a page carries of that name."""
+    text = page.read_text()
+    found = re.search(rf'<script type="application/json" id="data-{name}">(.*?)</script>', text, re.S)
+    return json.loads(found[1])
+
+
+def test_the_page_is_that_of_the_program(pairs, tmp_path):
+    """Of the same files, and of the clouds in memory."""
+    pytest.importorskip("agricolmap._pictures", reason="a build without pictures")
+    fixed, moving = (pairs / "same_field" / name / "point_cloud.ply" for name in ("uav", "ugv"))
+    prior = pairs / "same_field/prior.txt"
+    subprocess.run(
+        [
+            os.environ["AGRICOLMAP_PROGRAM"],
+            *("register", fixed, moving, "--prior", prior, "-o", tmp_path / "program"),
+        ],
+        check=True,
+        capture_output=True,
+    )
+    agricolmap.register(fixed, moving, prior).write_report(tmp_path / "files")
+    clouds = agricolmap.read(fixed), agricolmap.read(moving)
+    agricolmap.register(*clouds, prior).write_report(tmp_path / "clouds")
+    pages = [tmp_path / name / "report.html" for name in ("program", "files", "clouds")]
+    scenes = [page_data(page, "scene") for page in pages]
+    assert scenes[0]["maps"] and scenes[0] == scenes[1] == scenes[2]
+    facts = [page_data(page, "facts") for page in pages]
+    assert facts[0]["scene_missing"] == "" and facts[0] == facts[1] == facts[2]
+
+
+def test_a_page_of_other_clouds_is_refused(result, robot, pairs, tmp_path):
+    pytest.importorskip("agricolmap._pictures", reason="a build without pictures")
+    fixed, moving = tmp_path / "fixed.ply", tmp_path / "moving.ply"
+    for name, path in (("uav", fixed), ("ugv", moving)):
+        shutil.copy(pairs / "same_field" / name / "point_cloud.ply", path)
+    found = agricolmap.register(fixed, moving, pairs / "same_field/prior.txt")
+    agricolmap.Cloud(robot.xyz[::2], robot.colours[::2]).write(moving)
+    with pytest.raises(agricolmap.UsageError, match="moving.ply: is not the moving cloud"):
+        found.write_report(tmp_path / "new")
+    moving.unlink()
+    with pytest.raises(agricolmap.InputError, match="moving.ply"):
+        found.write_report(tmp_path / "new")
+    found.write_report(tmp_path / "new", pictures=False)
+    missing = page_data(tmp_path / "new/report.html", "facts")["scene_missing"]
+    assert missing == "the report was written without pictures"
 
 
 def test_reports_are_applied_by_the_program(result, pairs, robot, tmp_path):

@@ -27,7 +27,7 @@ def names_of(body):
     )
 
 
-@pytest.mark.parametrize("module", ["_core", "_gdal", "_pictures"])
+@pytest.mark.parametrize("module", ["_batch", "_core", "_gdal", "_pictures"])
 def test_stubs_name_what_the_extension_modules_have(module):
     stub = ast.parse((PACKAGE / f"{module}.pyi").read_text())
     if module != "_core" and importlib.util.find_spec(f"agricolmap.{module}") is None:

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "agricolmap/api/checks.hpp"
+#include "agricolmap/api/field_rasters.hpp"
 #include "agricolmap/api/settings.hpp"
 #include "agricolmap/core/angles.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/processor.hpp"
 #include "agricolmap/crop/field_layers.hpp"
+#include "agricolmap/crop/fine_strips.hpp"
 #include "agricolmap/field.hpp"
 
 namespace agricolmap {
@@ -72,19 +74,6 @@ CropFacts publicFacts(const crop::FieldFacts& inside, const Eigen::Vector2d& ori
   return facts;
 }
 
-std::vector<crop::Plot> plotsAbout(const Eigen::Vector2d& origin, const std::vector<Plot>& plots) {
-  std::vector<crop::Plot> moved;
-  for (const Plot& plot : plots) {
-    if (plot.corners.size() < 3) {
-      throw UsageError(fmt::format("plot {}: has {} corners; give three or more", plot.name,
-                                   plot.corners.size()));
-    }
-    crop::Plot& added = moved.emplace_back(crop::Plot{plot.name, plot.corners});
-    for (Eigen::Vector2d& corner : added.corners) corner -= origin;
-  }
-  return moved;
-}
-
 CropFacts factsOf(const std::string& name, crop::FieldLayers layers,
                   const crop::FactsOptions& options, const std::vector<Plot>& plots) {
   const std::vector<crop::Plot> inside = plotsAbout(layers.origin, plots);
@@ -104,28 +93,28 @@ CropFacts factsOf(const std::string& name, crop::FieldLayers layers,
   return publicFacts(found, layers.origin);
 }
 
-Raster<float> rasterOf(const FieldMap& map, const std::vector<float>& values,
-                       const std::string& layer) {
-  Raster<float> raster(map.rows, map.cols);
-  if (values.size() != raster.size()) {
-    throw UsageError(fmt::format("the layer {} has {} values for {} x {} cells", layer,
-                                 values.size(), map.rows, map.cols));
-  }
-  std::copy(values.begin(), values.end(), &raster[0]);
-  return raster;
-}
-
 crop::FieldLayers layersOf(const FieldMap& map) {
-  if (map.rows <= 0 || map.cols <= 0 || !(map.cell_m > 0.0)) {
-    throw UsageError("the map has no cells; give one that fuseClouds returned");
-  }
-  const Eigen::Vector2d corner = map.file_from_cell.translation().head<2>();
   crop::FieldLayers layers;
-  layers.origin = corner.array().floor().matrix();
-  layers.frame = {corner - layers.origin, map.cell_m, map.rows, map.cols};
-  layers.exg = rasterOf(map, map.excess_green, "excess_green");
-  if (map.has_heights) layers.height = rasterOf(map, map.plant_height_m, "plant_height_m");
+  layers.origin = originOf(map);
+  layers.frame = frameOf(map, layers.origin);
+  layers.exg = rasterOf(map.rows, map.cols, map.excess_green, "excess_green");
+  if (map.has_heights) {
+    layers.height = rasterOf(map.rows, map.cols, map.plant_height_m, "plant_height_m");
+  }
   layers.above_ground = true;
+  std::vector<crop::FineStrip> strips;
+  for (const FieldMap::Strip& strip : map.strips) {
+    const FieldMap::Fine& fine = strip.fine;
+    if (fine.rows == 0) continue;
+    const Eigen::Vector2d corner = fine.file_from_cell.translation().head<2>();
+    const auto raster = [&](const std::vector<float>& values, const char* layer) {
+      return rasterOf(fine.rows, fine.cols, values, strip.name + "'s " + layer);
+    };
+    strips.push_back({{corner - layers.origin, fine.cell_m, fine.rows, fine.cols},
+                      raster(fine.excess_green, "excess_green"),
+                      raster(fine.plant_height_m, "plant_height_m")});
+  }
+  crop::refine(layers, strips);
   return layers;
 }
 

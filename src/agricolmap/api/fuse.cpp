@@ -9,20 +9,17 @@
 #include <utility>
 
 #include "agricolmap/api/checks.hpp"
+#include "agricolmap/api/field_rasters.hpp"
 #include "agricolmap/api/settings.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/point_stream.hpp"
 #include "agricolmap/core/processor.hpp"
 #include "agricolmap/field.hpp"
+#include "agricolmap/fuse/fine_layers.hpp"
 #include "agricolmap/fuse/shared_map.hpp"
 
 namespace agricolmap {
 namespace {
-
-template <typename Value>
-std::vector<Value> valuesOf(const Raster<Value>& raster) {
-  return {raster.data(), raster.data() + raster.size()};
-}
 
 void requireStrips(const Cloud& fixed, const std::vector<LaidStrip>& strips) {
   requireWhole(fixed);
@@ -44,16 +41,30 @@ void requireStrips(const Cloud& fixed, const std::vector<LaidStrip>& strips) {
   }
 }
 
+FieldMap::Fine fineOf(const fuse::SharedMap& map, std::size_t strip, const PointStream& points,
+                      bool match_colours) {
+  FieldMap::Fine fine;
+  if (map.strips[strip].owned_area <= 0.0) return fine;
+  const map::GridMap own = fuse::fineMap(map, strip, points);
+  const fuse::FineLayers layers = fuse::fineLayers(map, strip, own, match_colours);
+  fine.rows = own.frame.rows;
+  fine.cols = own.frame.cols;
+  fine.cell_m = own.frame.cell;
+  fine.file_from_cell = fileFromCell(own.frame, map.layers.origin);
+  fine.plant_height_m = valuesOf(layers.plant_height);
+  fine.excess_green = valuesOf(layers.exg);
+  fine.cover = valuesOf(layers.cover);
+  fine.density = valuesOf(layers.density);
+  return fine;
+}
+
 FieldMap publicMap(const fuse::SharedMap& map) {
   const fuse::Layers& layers = map.layers;
   FieldMap field;
   field.rows = layers.frame.rows;
   field.cols = layers.frame.cols;
   field.cell_m = layers.frame.cell;
-  field.file_from_cell =
-      Eigen::Translation3d(layers.origin +
-                           Eigen::Vector3d(layers.frame.corner.x(), layers.frame.corner.y(), 0.0)) *
-      Eigen::Scaling(layers.frame.cell, layers.frame.cell, 1.0);
+  field.file_from_cell = fileFromCell(layers.frame, layers.origin);
   field.surface_m = valuesOf(layers.surface);
   field.ground_m = valuesOf(layers.ground);
   field.plant_height_m = valuesOf(layers.plant_height);
@@ -67,7 +78,8 @@ FieldMap publicMap(const fuse::SharedMap& map) {
   field.date = valuesOf(layers.date);
   field.has_heights = !map.flat;
   for (const fuse::FusedStrip& strip : map.strips) {
-    field.strips.push_back({strip.id, strip.code, strip.moved, strip.seen_area, strip.owned_area});
+    field.strips.push_back(
+        {strip.id, strip.code, strip.moved, strip.seen_area, strip.owned_area, {}});
   }
   field.warnings = map.warnings;
   return field;
@@ -124,13 +136,19 @@ FieldMap fuseClouds(const Cloud& fixed, const std::vector<LaidStrip>& strips,
                       {strip.plane_error_m, strip.height_error_m},
                       strip.heights_limited});
   }
-  const fuse::SharedMap map = fuse::shareMap(CloudStream(fixed), fixed_date, std::move(inputs),
-                                             in_force, [&](std::string_view step) {
-                                               if (control.on_stage) control.on_stage(step);
-                                             });
+  const fuse::SharedMap map =
+      fuse::shareMap(CloudStream(fixed), fixed_date, inputs, in_force, [&](std::string_view step) {
+        if (control.on_stage) control.on_stage(step);
+      });
   FieldMap field = publicMap(map);
+  for (std::size_t i = 0; i < map.strips.size(); ++i) {
+    throwIfInterrupted();
+    const auto input = std::ranges::find(inputs, map.strips[i].id, &fuse::StripInput::id);
+    field.strips[i].fine = fineOf(map, i, *input->points, in_force.match_colours);
+  }
   if (map.flat) forgetHeights(field);
   field.crs = fixed.crs;
+  field.fixed = {fixed.name, fixed.size() + fixed.dropped_points, fixed_date};
   return field;
 }
 

@@ -65,13 +65,18 @@ Registration::Uncertainty uncertaintyOf(const Cloud& fixed, const pipeline::Regi
   return uncertainty;
 }
 
-Registration::Heights heightsOf(const verdict::HeightsVerdict& inside) {
+Registration::Heights heightsOf(const verdict::HeightsVerdict& inside,
+                                const refine::VerticalScale& scale) {
   Registration::Heights heights;
   heights.measured = !inside.limited();
   if (inside.limited()) heights.limit = toString(inside.limit);
   heights.words = describe(inside);
   heights.deviation_m = inside.deviation;
   heights.bias_m = inside.bias;
+  if (scale.measured()) {
+    heights.vertical_scale = scale.value;
+    heights.vertical_scale_deviation = scale.deviation;
+  }
   return heights;
 }
 
@@ -121,7 +126,7 @@ Registration publicResult(const Cloud& fixed, const pipeline::Registration& foun
   if (found.transform) {
     result.fixed_from_moving = found.transform->fixed_from_moving;
     result.parts = partsOf(*found.transform);
-    result.heights = heightsOf(found.verdict.heights);
+    result.heights = heightsOf(found.verdict.heights, found.placed->heights.measured_scale);
   }
   if (found.placed) {
     result.evidence = evidenceOf(*found.placed);
@@ -195,10 +200,15 @@ Registration finished(const Cloud& fixed, const Cloud& moving, pipeline::Registr
                       const Asked& asked, const Monitor& monitor) {
   auto record = std::make_shared<Registration::Record>();
   record->found = std::move(found);
-  record->evidence = asked.options.evidence;
+  record->options = asked.options;
+  record->preset = asked.preset;
+  record->guess = asked.guess;
   record->fixed_name = fixed.name;
   record->moving_name = moving.name;
   record->fixed_origin = fixed.origin;
+  record->moving_origin = moving.origin;
+  record->fixed_points = fixed.size();
+  record->moving_points = moving.size();
   record->fixed_crs = fixed.crs;
   record->fixed_coloured = fixed.hasColour();
   record->moving_coloured = moving.hasColour();

@@ -342,8 +342,12 @@ Manifest readManifest(const fs::path& file) {
     throw InputError(fmt::format("{}: {}; name a manifest, a YAML file that lists maps and strips",
                                  file.string(), why));
   }
+  return manifestOf(text.str(), file);
+}
+
+Manifest manifestOf(const std::string& text, const fs::path& file) {
   const YAML::Node root =
-      config::parseYaml(text.str(), file.string(), "a manifest; put all strips into one");
+      config::parseYaml(text, file.string(), "a manifest; put all strips into one");
   Manifest manifest;
   manifest.file = file;
   Problems problems;

@@ -40,5 +40,7 @@ struct Manifest {
 /// Throws InputError when the file cannot be read, UsageError with all that is wrong in it, a line
 /// for each fault: `MANIFEST:12: ...`.
 Manifest readManifest(const std::filesystem::path& file);
+/// The same of its text; `file`: what it is called, and what its files lie beside.
+Manifest manifestOf(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace agricolmap::batch

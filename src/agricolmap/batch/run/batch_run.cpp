@@ -1,7 +1,6 @@
-#include "batch_run.hpp"
+#include "agricolmap/batch/run/batch_run.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -11,16 +10,15 @@
 #include <utility>
 
 #include "agricolmap/batch/memory.hpp"
+#include "agricolmap/batch/picture/summary_page.hpp"
 #include "agricolmap/batch/pool.hpp"
 #include "agricolmap/batch/summary.hpp"
 #include "agricolmap/core/interrupt.hpp"
 #include "agricolmap/core/parallel.hpp"
-#include "agricolmap/io/cloud/tiled_stream.hpp"
+#include "agricolmap/io/output/file_sink.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
-#include "option_flags.hpp"
-#include "register_run.hpp"
 
-namespace agricolmap {
+namespace agricolmap::batch {
 namespace fs = std::filesystem;
 namespace {
 
@@ -29,9 +27,9 @@ namespace {
 constexpr double kMemoryOfAny = 3e8;
 constexpr double kMemoryPerByte = 6.0;
 constexpr double kMemoryPerPackedByte = 24.0;
-constexpr std::size_t kWidestId = 40;
+constexpr double kShareOfMemory = 0.8;  // of what is available
 
-double memoryGuess(const batch::Strip& strip) {
+double memoryGuess(const Strip& strip) {
   std::error_code error;
   const fs::path file = io::mapFilesOf(strip.file).main;
   const auto bytes = static_cast<double>(fs::file_size(file, error));
@@ -40,8 +38,8 @@ double memoryGuess(const batch::Strip& strip) {
   return kMemoryOfAny + bytes * (packed ? kMemoryPerPackedByte : kMemoryPerByte);
 }
 
-PairFiles filesOf(const batch::Strip& strip, const batch::MapEntry& map) {
-  PairFiles files;
+run::PairFiles filesOf(const Strip& strip, const MapEntry& map) {
+  run::PairFiles files;
   files.fixed = map.file;
   files.moving = strip.file;
   files.fixed_crs = map.crs;
@@ -50,9 +48,14 @@ PairFiles filesOf(const batch::Strip& strip, const batch::MapEntry& map) {
   return files;
 }
 
+/// An option as a flag of the program.
+std::string flagOf(std::string path) {
+  std::ranges::replace(path, '_', '-');
+  return "--" + path;
+}
+
 /// The command that does the same for one strip.
-std::string commandOf(const batch::Strip& strip, const batch::MapEntry& map,
-                      const fs::path& folder) {
+std::string commandOf(const Strip& strip, const MapEntry& map, const fs::path& folder) {
   std::vector<std::string> words = {"agricolmap", "register", map.file,
                                     strip.file,   "-o",       folder.string()};
   const auto add = [&](const char* flag, const std::string& value) {
@@ -69,12 +72,12 @@ std::string commandOf(const batch::Strip& strip, const batch::MapEntry& map,
   for (const auto& [path, text] : strip.settings.options) {
     words.push_back(fmt::format("{}={}", flagOf(path), text));
   }
-  return commandText(words);
+  return run::commandText(words);
 }
 
-RegisterRun runOf(const batch::Strip& strip, const batch::MapEntry& map, const fs::path& folder,
-                  const Globals& globals) {
-  RegisterRun run;
+run::RegisterRun runOf(const Strip& strip, const MapEntry& map, const fs::path& folder,
+                       const RunOptions& options) {
+  run::RegisterRun run;
   run.files = filesOf(strip, map);
   run.prior = strip.prior;
   run.path = strip.path;
@@ -82,14 +85,15 @@ RegisterRun runOf(const batch::Strip& strip, const batch::MapEntry& map, const f
   run.pictures = strip.settings.pictures;
   run.preset = strip.settings.preset;
   run.options = strip.options;
+  run.version = options.version;
   run.command_line = commandOf(strip, map, folder);
-  run.threads = globals.threads;
+  run.threads = options.threads;
   return run;
 }
 
 /// What was made by something else than a batch is not to be replaced as a whole.
 void requireOurs(const fs::path& folder) {
-  if (!fs::exists(folder) || fs::exists(folder / batch::kRecordName)) return;
+  if (!fs::exists(folder) || fs::exists(folder / kRecordName)) return;
   if (fs::is_directory(folder) && fs::is_empty(folder)) return;
   throw OutputError(
       fmt::format("{}: is there already and not of a batch; move it away", folder.string()));
@@ -101,46 +105,26 @@ int threadsBeside(std::size_t threads, std::size_t jobs) {
   return threads > jobs ? static_cast<int>(threads - jobs) + 1 : 1;
 }
 
-}  // namespace
-
+/// As a limit says, else one for each core.
 std::size_t threadsInForce() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
-std::shared_ptr<const LoadedFixed> SharedFixed::get(const io::MapFiles& files,
-                                                    const io::CommonFrame& frame) {
-  const std::string key = fmt::format(
-      "{}\n{}\n{}\n{}\n{}", files.main.string(), files.model.value_or("").string(), frame.crs.wkt,
-      frame.fixed_file ? frame.fixed_file->wkt : "", frame.fixed != nullptr);
-  const std::scoped_lock lock(mutex_);
-  const auto [found, is_new] = entries_.try_emplace(key);
-  Entry& entry = found->second;
-  if (is_new) {
-    try {
-      io::StreamOptions options;
-      options.read.map = frame.fixed.get();
-      options.on_pass = on_pass;
-      options.crs = frame.crs;
-      const auto stream = io::streamMap(files, options);
-      entry.fixed = std::make_shared<const LoadedFixed>(std::make_unique<io::TiledStream>(*stream));
-    } catch (...) {
-      entry.error = std::current_exception();
-    }
-  }
-  if (entry.error) std::rethrow_exception(entry.error);
-  return entry.fixed;
+void writeWhole(const fs::path& path, const std::string& text) {
+  io::StagedFile file(path, true);
+  io::writeText(file.path(), text);
+  file.commit();
 }
 
-Batch::Batch(const batch::Manifest& manifest, const BatchOptions& options, const Globals& globals)
+}  // namespace
+
+double usualMemory() { return kShareOfMemory * availableMemory() + memoryInUse(); }
+
+Batch::Batch(const Manifest& manifest, const RunOptions& options, const Listener& listener)
     : manifest_(manifest),
       options_(options),
-      globals_(globals),
-      progress_(globals),
-      outcomes_(manifest.strips.size()) {
-  for (const batch::Strip& strip : manifest.strips) {
-    id_width_ = std::clamp(strip.id.size(), id_width_, kWidestId);
-  }
-}
+      listener_(listener),
+      outcomes_(manifest.strips.size()) {}
 
 fs::path Batch::folderOf(std::size_t strip) const {
   return options_.output / manifest_.strips[strip].id;
@@ -152,22 +136,22 @@ std::vector<std::size_t> Batch::keepFinished(const std::vector<std::size_t>& str
   std::size_t there = 0;
   for (const std::size_t i : strips) {
     const fs::path folder = folderOf(i);
-    std::optional<batch::Record> record =
-        fs::exists(folder) ? batch::readRecord(folder) : std::nullopt;
+    std::optional<Record> record = fs::exists(folder) ? readRecord(folder) : std::nullopt;
     if (record) ++there;
     const bool kept = options_.resume && record &&
-                      record->fingerprint == batch::fingerprintOf(manifest_.strips[i], manifest_);
+                      record->fingerprint == fingerprintOf(manifest_.strips[i], manifest_);
     if (kept) {
-      outcomes_[i] = {std::move(record), ExitCode::kOk, true};
+      outcomes_[i] = {std::move(record), ErrorKind::kInternal, true};
     } else {
       left.push_back(i);
     }
   }
-  if (there > 0 && !options_.resume && !globals_.overwrite) {
-    throw OutputError(fmt::format(
-        "{}: {} of the strips have results already; --resume keeps those of which nothing has "
-        "changed, --overwrite does all again",
-        options_.output.string(), there));
+  if (there > 0 && !options_.resume && !options_.overwrite) {
+    throw OutputError(
+        fmt::format("{}: {} of the strips have results already; keep those of which nothing has "
+                    "changed, or do all again",
+                    options_.output.string(), there),
+        Remedy::kResumeOrOverwrite);
   }
   return left;
 }
@@ -194,10 +178,10 @@ void Batch::run(const std::vector<std::size_t>& strips, bool grounds) {
   // Before hours of work of which nothing could be kept.
   if (!left.empty()) std::ignore = io::StagedOutput(options_.output, true);
   removeLeftovers(strips);
-  todo_ = left.size();
+  progress_ = {0, left.size(), 0.0};
   watch_ = {};
-  if (!globals_.quiet && left.size() < strips.size()) {
-    fmt::print("{} of {} strips are done already\n", strips.size() - left.size(), strips.size());
+  if (listener_.on_kept && left.size() < strips.size()) {
+    listener_.on_kept(strips.size() - left.size(), strips.size());
   }
   for (std::size_t map = 0; map < manifest_.maps.size(); ++map) {
     const auto of = [&](const std::vector<std::size_t>& from) {
@@ -210,12 +194,12 @@ void Batch::run(const std::vector<std::size_t>& strips, bool grounds) {
     const std::vector<std::size_t> all = of(strips);
     if (here.empty() && !(grounds && !all.empty())) continue;
     SharedFixed shared;
-    shared.on_pass = progress_.ofPasses();
-    progress_.step(fmt::format("map {}", manifest_.maps[map].id));
+    shared.on_pass = listener_.on_points;
+    if (listener_.on_map) listener_.on_map(manifest_.maps[map].id);
     const auto fixed = prepare(here.empty() ? all : here, shared);
     shared.on_pass = {};
     if (grounds && fixed) {
-      grounds_.push_back(batch::groundOf(manifest_.maps[map].id, *fixed->points));
+      grounds_.push_back(groundOf(manifest_.maps[map].id, *fixed->points));
     }
     if (!here.empty()) runMap(here, shared);
     throwIfInterrupted();
@@ -224,99 +208,116 @@ void Batch::run(const std::vector<std::size_t>& strips, bool grounds) {
 
 /// The map as its first strip sees it, on all threads, before strips share them. Nothing where it
 /// cannot be read: its strips say so, each by itself.
-std::shared_ptr<const LoadedFixed> Batch::prepare(const std::vector<std::size_t>& strips,
-                                                  SharedFixed& shared) {
+std::shared_ptr<const run::LoadedFixed> Batch::prepare(const std::vector<std::size_t>& strips,
+                                                       SharedFixed& shared) const {
   constexpr std::size_t kTries = 3;
   for (std::size_t i = 0; i < std::min(kTries, strips.size()); ++i) {
-    const batch::Strip& strip = manifest_.strips[strips[i]];
+    const Strip& strip = manifest_.strips[strips[i]];
     try {
-      const PairFiles files = filesOf(strip, manifest_.maps[strip.map]);
-      const auto fixed = shared.get(io::mapFilesOf(files.fixed), frameOf(files));
+      const run::PairFiles files = filesOf(strip, manifest_.maps[strip.map]);
+      const auto fixed = shared.get(io::mapFilesOf(files.fixed), run::frameOf(files));
       std::ignore = fixed->cloud.footprint(strip.options.level);
-      printWarnings(fixed->cloud.facts().warnings);
+      if (listener_.on_map_warnings) listener_.on_map_warnings(fixed->cloud.facts().warnings);
       return fixed;
     } catch (const Interrupted&) {
       throw;
     } catch (const Error& error) {
-      spdlog::debug("{}: {}", strip.id, error.what());
+      detail(strip.id, error.what());
     }
   }
   return nullptr;
 }
 
 void Batch::runMap(const std::vector<std::size_t>& strips, SharedFixed& shared) {
-  const std::size_t jobs = std::min(options_.jobs, strips.size());
-  const ThreadLimit limit(threadsBeside(threadsInForce(), jobs));
-  batch::PoolWork work;
+  const std::size_t threads = threadsInForce();
+  const std::size_t most = options_.jobs > 0 ? options_.jobs : threads;
+  const std::size_t jobs = std::min(most, strips.size());
+  const double memory = options_.memory > 0.0 ? options_.memory : usualMemory();
+  const ThreadLimit limit(threadsBeside(threads, jobs));
+  PoolWork work;
   work.count = strips.size();
   work.estimate = [&](std::size_t i) { return memoryGuess(manifest_.strips[strips[i]]); };
-  work.memory_in_use = batch::memoryInUse;
+  work.memory_in_use = memoryInUse;
   work.work = [&](std::size_t i) { doStrip(strips[i], shared); };
-  batch::runPool(work, {jobs, options_.memory}, globals_.stop);
+  runPool(work, {jobs, memory}, options_.stop);
 }
 
 /// Registers a strip and puts its results in place.
-batch::Record Batch::registered(std::size_t index, SharedFixed& shared) const {
-  const batch::Strip& strip = manifest_.strips[index];
+Record Batch::registered(std::size_t index, SharedFixed& shared) const {
+  const Strip& strip = manifest_.strips[index];
   const fs::path folder = folderOf(index);
-  batch::Record record = batch::recordOf(strip, manifest_);
-  record.fingerprint = batch::fingerprintOf(strip, manifest_);
+  Record record = recordOf(strip, manifest_);
+  record.fingerprint = fingerprintOf(strip, manifest_);
   requireOurs(folder);
   io::StagedOutput output(folder, io::Existing::kReplace);
-  Monitor monitor(globals_.stop);
-  const FixedSource fixed = [&](const io::MapFiles& files, const io::CommonFrame& frame) {
+  Monitor monitor(options_.stop);
+  const run::FixedSource fixed = [&](const io::MapFiles& files, const io::CommonFrame& frame) {
     return shared.get(files, frame);
   };
   // They are in the report; of thousands of strips nobody reads them here.
-  const Say say = [&](const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) spdlog::debug("{}: {}", strip.id, warning);
+  const run::Say say = [&](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) detail(strip.id, warning);
   };
-  const RegisterRun run = runOf(strip, manifest_.maps[strip.map], folder, globals_);
-  const RegisterResult found = registerInto(run, fixed, output, monitor, say);
+  const run::RegisterRun asked = runOf(strip, manifest_.maps[strip.map], folder, options_);
+  const run::RegisterResult found = run::registerInto(asked, fixed, output, monitor, say);
   const auto& placed = found.registration.placed;
-  batch::setVerdict(found.registration.verdict,
-                    placed ? placed->uncertainty : std::optional<verdict::PoseUncertainty>(),
-                    record);
+  setVerdict(found.registration.verdict,
+             placed ? placed->uncertainty : std::optional<verdict::PoseUncertainty>(), record);
   record.outline = found.outline;
   record.seconds = monitor.seconds();
-  batch::writeRecord(output.path(batch::kRecordName), record);
+  writeRecord(output.path(kRecordName), record);
   output.commit();
   return record;
 }
 
 void Batch::doStrip(std::size_t index, SharedFixed& shared) {
-  const StopScope scope(globals_.stop);
-  const auto failed = [&](const std::string& what, ExitCode code) {
-    batch::Record record = batch::recordOf(manifest_.strips[index], manifest_);
+  const StopScope scope(options_.stop);
+  const auto failed = [&](const std::string& what, ErrorKind kind) {
+    Record record = recordOf(manifest_.strips[index], manifest_);
     record.message = what;
-    tell(index, std::move(record), code);
+    tell(index, std::move(record), kind);
   };
   try {
-    tell(index, registered(index, shared), ExitCode::kOk);
+    tell(index, registered(index, shared), ErrorKind::kInternal);
   } catch (const Interrupted&) {
     return;
   } catch (const Error& error) {
-    failed(error.what(), exitCodeOf(error.kind()));
+    failed(error.what(), error.kind());
   } catch (const std::bad_alloc&) {
-    failed("out of memory; crop the strip or enlarge grid.cell", ExitCode::kInternal);
+    failed("out of memory; crop the strip or enlarge grid.cell", ErrorKind::kInternal);
   } catch (const std::exception& error) {
-    failed(error.what(), ExitCode::kInternal);
+    failed(error.what(), ErrorKind::kInternal);
   }
 }
 
 /// Notes what became of a strip and says it.
-void Batch::tell(std::size_t index, batch::Record record, ExitCode code) {
+void Batch::tell(std::size_t index, Record record, ErrorKind error) {
   const std::scoped_lock lock(mutex_);
-  ++worked_;
-  if (!globals_.quiet) {
-    progress_.clear();
-    fmt::print("{}\n", batch::lineOf(record, id_width_));
-    std::fflush(stdout);
-  }
-  outcomes_[index] = {std::move(record), code, false};
-  const double each = watch_.seconds() / static_cast<double>(worked_);
-  progress_.step(fmt::format("{} of {} strips, {:.1f} s each, {:.0f} min left", worked_, todo_,
-                             each, each * static_cast<double>(todo_ - worked_) / 60.0));
+  ++progress_.worked;
+  progress_.seconds = watch_.seconds();
+  outcomes_[index] = {std::move(record), error, false};
+  if (listener_.on_strip) listener_.on_strip(*outcomes_[index].record, progress_);
 }
 
-}  // namespace agricolmap
+void Batch::detail(const std::string& strip, const std::string& text) const {
+  if (!listener_.on_detail) return;
+  const std::scoped_lock lock(mutex_);
+  listener_.on_detail(strip, text);
+}
+
+void Batch::writeSummary(double seconds) const {
+  std::vector<Record> records;
+  for (const StripOutcome& outcome : outcomes_) {
+    if (outcome.record) records.push_back(*outcome.record);
+  }
+  const fs::path& folder = options_.output;
+  writeWhole(folder / "summary.csv", csvOf(records));
+  writeWhole(folder / "summary.json", jsonOf(records, manifest_, seconds));
+  writeWhole(folder / "summary.html", summaryPage(records, manifest_, seconds));
+  if (grounds_.empty()) return;
+  io::StagedFile picture(folder / "summary.png", true);
+  writeSummaryPicture(picture.path(), grounds_, records);
+  picture.commit();
+}
+
+}  // namespace agricolmap::batch

@@ -1,4 +1,4 @@
-#include "pair_files.hpp"
+#include "agricolmap/run/pair_files.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "agricolmap/io/cloud/move_file.hpp"
 #include "agricolmap/io/raster/map_files.hpp"
 
-namespace agricolmap {
+namespace agricolmap::run {
 namespace {
 
 constexpr std::array kFormats{io::CloudFormat::kPly, io::CloudFormat::kPcd, io::CloudFormat::kLas,
@@ -21,30 +21,12 @@ std::string nameOfAligned(io::CloudFormat format) { return "aligned." + io::endi
 
 }  // namespace
 
-void PairFiles::addTo(CLI::App& command) {
-  command.add_option("FIXED", fixed,
-                     "The wide map: LAS, LAZ, PLY, PCD, lines of text, or ORTHO.tif,DSM.tif");
-  command.add_option("MOVING", moving, "The map to be moved: the same");
-  command.add_option("--fixed-crs", fixed_crs,
-                     "Coordinate system of FIXED: EPSG:32632, WKT or a file with it. Default: what "
-                     "the file or a .prj beside it says, else that of MOVING");
-  command.add_option("--moving-crs", moving_crs, "The same of MOVING; brought to that of FIXED");
-  command.add_option(
-      "--aligned-format", aligned,
-      "Format of the aligned cloud: ply, pcd, las, laz, copc, or auto: las or laz as MOVING is, "
-      "else ply [auto]");
-}
-
-void PairFiles::check() const {
-  if (aligned != "auto") formatNamed("--aligned-format", aligned);
-}
-
-io::CloudFormat formatNamed(const std::string& flag, const std::string& name) {
+io::CloudFormat formatNamed(const std::string& of, const std::string& name) {
   for (const io::CloudFormat format : kFormats) {
     const std::string ending = io::endingOf(format);
     if (name == ending.substr(0, ending.find('.'))) return format;
   }
-  throw UsageError(fmt::format("{} {}: is none of ply, pcd, las, laz, copc and auto", flag, name));
+  throw UsageError(fmt::format("{} {}: is none of ply, pcd, las, laz, copc and auto", of, name));
 }
 
 std::shared_ptr<const LoadedFixed> streamedFixed(
@@ -69,7 +51,7 @@ LoadedPair loadPair(const PairFiles& files, const FixedSource& fixed_source) {
   pair.frame = frameOf(files);
   if (!moving_files.raster) pair.format = io::formatOf(moving_files.main);
   if (pair.format && io::isLas(*pair.format)) pair.aligned = *pair.format;
-  if (files.aligned != "auto") pair.aligned = formatNamed("--aligned-format", files.aligned);
+  if (files.aligned != "auto") pair.aligned = formatNamed("aligned", files.aligned);
   // Two files, two cores: the disk cache feeds both.
   parallelFor(2, [&](std::size_t i) {
     if (i == 0) {
@@ -116,4 +98,4 @@ std::string transformComment(const LoadedPair& pair) {
       pair.frame.moving_reprojected ? ", to which MOVING was reprojected first" : "");
 }
 
-}  // namespace agricolmap
+}  // namespace agricolmap::run

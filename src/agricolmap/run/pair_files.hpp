@@ -2,7 +2,6 @@
 // belongs.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
@@ -19,7 +18,7 @@
 #include "agricolmap/io/raster/map_files.hpp"
 #include "agricolmap/pipeline/fixed_cloud.hpp"
 
-namespace agricolmap {
+namespace agricolmap::run {
 
 /// Each the file of a cloud, an orthomosaic, or ORTHO.tif,DSM.tif.
 struct PairFiles {
@@ -28,10 +27,6 @@ struct PairFiles {
   std::string fixed_crs;  ///< as the user says; empty: as the files do
   std::string moving_crs;
   std::string aligned = "auto";  ///< format of the aligned cloud
-
-  void addTo(CLI::App& command);
-  /// Throws UsageError for a format that there is none of.
-  void check() const;
 };
 
 /// A fixed cloud, which passes by and is not kept.
@@ -63,8 +58,9 @@ struct LoadedPair {
 };
 LoadedPair loadPair(const PairFiles& files, const FixedSource& fixed);
 
-/// The format that is called `name` ("copc"). Throws UsageError, naming `flag`, where none is.
-io::CloudFormat formatNamed(const std::string& flag, const std::string& name);
+/// The format that is called `name` ("copc"). Throws UsageError, naming what it is `of`, where none
+/// is.
+io::CloudFormat formatNamed(const std::string& of, const std::string& name);
 
 /// "aligned.ply", for every format.
 std::vector<std::string> alignedNames();
@@ -78,4 +74,4 @@ std::vector<std::string> writeAligned(const PairFiles& files, const LoadedPair& 
 /// What transform.txt says of itself; empty where nothing is known.
 std::string transformComment(const LoadedPair& pair);
 
-}  // namespace agricolmap
+}  // namespace agricolmap::run

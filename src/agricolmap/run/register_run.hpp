@@ -10,10 +10,10 @@
 #include "agricolmap/core/monitor.hpp"
 #include "agricolmap/io/output/staged_output.hpp"
 #include "agricolmap/pipeline/registration.hpp"
-#include "common.hpp"
-#include "pair_files.hpp"
+#include "agricolmap/run/initial_guess.hpp"
+#include "agricolmap/run/pair_files.hpp"
 
-namespace agricolmap {
+namespace agricolmap::run {
 
 struct RegisterRun {
   PairFiles files;
@@ -24,6 +24,7 @@ struct RegisterRun {
   std::string preset;
   pipeline::RegistrationOptions options;  ///< in force
   // For the report.
+  std::string version;  ///< of what makes it
   std::string command_line;
   int threads = 0;
 };
@@ -46,7 +47,4 @@ std::vector<std::string> staleResults();
 /// The command line as one line of text, quoted where a shell would need it.
 std::string commandText(const std::vector<std::string>& words);
 
-/// Of a registration that ended with this verdict.
-ExitCode exitCodeOf(verdict::Status status);
-
-}  // namespace agricolmap
+}  // namespace agricolmap::run

@@ -1,4 +1,4 @@
-#include "register_run.hpp"
+#include "agricolmap/run/register_run.hpp"
 
 #include <algorithm>
 
@@ -14,12 +14,12 @@
 #include "agricolmap/report/page/registration_page.hpp"
 #include "agricolmap/report/pictures/pictures.hpp"
 
-namespace agricolmap {
+namespace agricolmap::run {
 namespace {
 
 report::RegistrationReportInfo reportInfo(const RegisterRun& run) {
   report::RegistrationReportInfo info;
-  info.version = AGRICOLMAP_VERSION;
+  info.version = run.version;
   info.threads = run.threads;
   info.command_line = run.command_line;
   info.preset = run.preset;
@@ -72,9 +72,10 @@ void writeReports(const RegisterRun& run, const LoadedPair& pair,
       return report::pageScene(fixed, pair.moving, result, info.prior);
     });
   } else {
-    missing = "the registration was run with --no-pictures";
+    missing = "the registration was run without pictures";
   }
-  page.facts = report::pageFacts(fixed, pair.moving, result, run.options, run.preset, missing);
+  page.facts = report::pageFacts({fixed.facts().origin, pair.moving.origin}, result, run.options,
+                                 run.preset, missing);
   page.report = report::registrationJson(fixed, pair.moving, result, monitor, info);
   io::writeText(output.path("registration.json"), page.report.dump(2) + "\n");
   report::writeRegistrationPage(output.path(report::kPageName), page);
@@ -151,16 +152,4 @@ std::string commandText(const std::vector<std::string>& words) {
   return text;
 }
 
-ExitCode exitCodeOf(verdict::Status status) {
-  switch (status) {
-    case verdict::Status::kAccepted:
-      return ExitCode::kOk;
-    case verdict::Status::kAmbiguous:
-      return ExitCode::kAmbiguous;
-    case verdict::Status::kRejected:
-      break;
-  }
-  return ExitCode::kRejected;
-}
-
-}  // namespace agricolmap
+}  // namespace agricolmap::run
