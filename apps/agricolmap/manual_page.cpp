@@ -87,7 +87,8 @@ std::string exitStatus() {
       {10, "The registration was rejected."},
       {11, "The registration is ambiguous: several places fit about equally well."},
       {12, "Some strips of a batch came to no answer; the others have theirs."},
-      {130, "Interrupted; nothing was written."}};
+      {130,
+       "Interrupted; nothing was written, but strips that a batch had finished stay (--resume)."}};
   std::string text = ".SH \"EXIT STATUS\"\n";
   for (const auto& [code, words] : kCodes) text += fmt::format(".TP\n{}\n{}\n", code, words);
   return text;

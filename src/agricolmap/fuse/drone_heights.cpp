@@ -8,8 +8,6 @@
 namespace agricolmap::fuse {
 namespace {
 
-/// Cells nearer to what a strip did not see are not asked: half of them is hidden.
-constexpr float kInside = 0.06F;
 constexpr double kClass = 0.02;           ///< width of a class at least [m]
 constexpr std::size_t kLeastCells = 300;  ///< in a class
 constexpr double kTrim = 0.05;            ///< of the differences at either end
@@ -33,13 +31,15 @@ Kind kindOf(const FixedHeights& fixed, std::size_t i) {
   return {fixed.cover[i] >= 0.5F ? std::size_t{1} : std::size_t{0}, height};
 }
 
-/// Calls `take(curve, sample)` for every cell of a strip that both show.
+/// Calls `take(curve, sample)` for every cell of a strip that both show, those beside what it did
+/// not see, too: tall plants hide what is behind them, so that far from every hole lies what is
+/// low, and plants in maize would seem 8 cm lower than they are.
 template <typename Take>
 void samplesOf(const FixedHeights& fixed, const StripCells& strip, const Take& take) {
   for (int r = 0; r < strip.depth.rows(); ++r) {
     for (int c = 0; c < strip.depth.cols(); ++c) {
       const int row = strip.row + r, col = strip.col + c;
-      if (strip.depth(r, c) < kInside || !fixed.map.valid(row, col)) continue;
+      if (strip.depth(r, c) <= 0.0F || !fixed.map.valid(row, col)) continue;
       const Kind kind = kindOf(fixed, fixed.map.height.index(row, col));
       const Sample sample{kind.height, static_cast<double>(strip.coarse.height(r, c)) -
                                            static_cast<double>(fixed.map.height(row, col))};
