@@ -9,8 +9,8 @@
 
 #include "agricolmap/change/common_grid.hpp"
 #include "agricolmap/core/error.hpp"
-#include "agricolmap/io/raster/raster_file.hpp"
 #include "agricolmap/io/raster/raster_place.hpp"
+#include "agricolmap/io/raster/surface_layer.hpp"
 
 namespace agricolmap {
 namespace fs = std::filesystem;
@@ -23,15 +23,6 @@ GridFrame aboutOrigin(const io::LayerShape& shape, const Eigen::Vector3d& origin
   return frame;
 }
 
-io::RasterPlace placeOf(const io::LayerShape& shape) {
-  const GridFrame& frame = shape.frame;
-  Eigen::Affine2d world_from_pixel = Eigen::Affine2d::Identity();
-  world_from_pixel.linear().diagonal() << frame.cell, -frame.cell;
-  world_from_pixel.translation() =
-      shape.origin.head<2>() + frame.corner + Eigen::Vector2d(0.0, frame.rows * frame.cell);
-  return {world_from_pixel, shape.crs};
-}
-
 }  // namespace
 
 ChangeMap::ChangeMap(const std::string& name, const std::optional<GivenError>& error,
@@ -40,7 +31,7 @@ ChangeMap::ChangeMap(const std::string& name, const std::optional<GivenError>& e
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) folder_ = report::readSharedMap(name);
   shape_ = io::readLayerShape(flat() ? layerFile("cover") : surfaceFile());
-  io::checkMetres(shape_.name, placeOf(shape_));
+  io::checkMetres(shape_.name, io::placeOf(shape_));
   if (!flat() && !error_ && !(folder_ && folder_->layer("error"))) {
     throw UsageError(fmt::format(
         "{}: nothing is known of its errors; say which RMS is expected of its heights and places, "
@@ -86,16 +77,9 @@ void ChangeMap::requireOwnGrid(const fs::path& file) const {
 Raster<float> ChangeMap::surfaceIn(const io::CellWindow& window,
                                    std::vector<std::string>& warnings) const {
   if (folder_) return io::readLayer<float>(surfaceFile(), window).bands.front();
-  // Surface models of others have units, scales and nodata of many kinds.
-  const int top = shape_.frame.rows - window.row - window.rows;
-  io::RasterHeights heights =
-      io::readHeights(name_, {io::PixelWindow{window.col, top, window.cols, window.rows}, 1});
-  warnings.insert(warnings.end(), heights.warnings.begin(), heights.warnings.end());
-  Raster<float>& rows = heights.height;
-  for (int low = 0, high = rows.rows() - 1; low < high; ++low, --high) {
-    std::swap_ranges(rows.row(low), rows.row(low) + rows.cols(), rows.row(high));
-  }
-  return std::move(rows);
+  io::SurfaceLayer surface = io::readSurfaceLayer(name_, shape_, window);
+  warnings.insert(warnings.end(), surface.warnings.begin(), surface.warnings.end());
+  return std::move(surface.height);
 }
 
 void ChangeMap::readErrors(const Part& part, const GridFrame& grid,
@@ -157,7 +141,8 @@ CommonGround commonGroundOf(const ChangeMap& a, const ChangeMap& b,
                             std::vector<std::string>& warnings) {
   const io::LayerShape& one = a.shape();
   const io::LayerShape& other = b.shape();
-  if (const auto warning = io::checkSameCrs(one.name, placeOf(one), other.name, placeOf(other))) {
+  if (const auto warning =
+          io::checkSameCrs(one.name, io::placeOf(one), other.name, io::placeOf(other))) {
     warnings.push_back(*warning);
   }
   CommonGround ground;
@@ -166,7 +151,7 @@ CommonGround commonGroundOf(const ChangeMap& a, const ChangeMap& b,
   const auto frame = change::commonGrid(one.frame, aboutOrigin(other, ground.origin));
   if (!frame) {
     const auto extent = [](const io::LayerShape& shape) {
-      return io::extentOf(placeOf(shape), shape.frame.rows, shape.frame.cols);
+      return io::extentOf(io::placeOf(shape), shape.frame.rows, shape.frame.cols);
     };
     throw InputError(
         fmt::format("{} ({}) and {} ({}) do not overlap by a whole cell; compare maps of one field",

@@ -178,10 +178,11 @@ def diff(
     averaged over these cells. As ``agricolmap diff``, whose files of two folders say the same.
 
     Args:
-        map_a: the map before: one that `fuse` returned, or the folder of one.
+        map_a: the map before: one that `fuse` returned, the folder of one, or a surface model
+            (GeoTIFF) of any program.
         map_b: the map after, likewise.
         error_a, error_b: (heights, places): expected RMS of the map's heights, and of its places, x
-            and y together [m], each from 0 to 100; instead of its own.
+            and y together [m], each from 0 to 100; instead of its own. A surface model has none.
         frame_error: the same between the frames of both maps, as of two flights. Nothing is reckoned
             with where it is not said, and a warning tells when it should have been.
         plots: polygons by name, N×2 corners in file coordinates [m], to compare in, too.
@@ -190,8 +191,8 @@ def diff(
 
     Raises:
         InputError: when the maps are in different coordinate systems, do not overlap or know nothing
-            in common; when no plot lies where they are compared; for a folder that is no map.
-        UsageError: for errors, plots and a grid that make no sense.
+            in common; when no plot lies where they are compared; for a path that is no map.
+        UsageError: for errors, plots and a grid that make no sense; for a surface model without errors.
         Interrupted: when `stop` is set.
     """
     handles = map_handle(map_a, "map_a"), map_handle(map_b, "map_b")

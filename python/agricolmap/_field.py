@@ -163,21 +163,22 @@ class FieldMap(Cells):
     _handle: Optional[_core.FieldMap] = None
 
     @classmethod
-    def read(cls, folder: PathLike) -> "FieldMap":
-        """A map as ``agricolmap fuse`` wrote it, by its folder.
+    def read(cls, path: PathLike) -> "FieldMap":
+        """A map as ``agricolmap fuse`` wrote it, by its folder, or a surface model of any program.
 
-        Layers that it does not have are NaN. Surface and ground are as high as the files say.
+        Layers that it does not have are NaN: of a surface model (GeoTIFF) all others, and its
+        errors. Surface and ground are as high as the files say.
 
         Raises:
             InputError: for what is no such map, or a damaged one.
             UsageError: in a build without GDAL.
         """
-        text = _arrays.path_of(folder, "folder")
+        text = _arrays.path_of(path, "path")
         try:
             from . import _gdal
         except ImportError:
             raise UsageError(
-                "folder: this build has no GDAL, which maps on the disk need (AGRICOLMAP_WITH_GDAL)"
+                "path: this build has no GDAL, which maps on the disk need (AGRICOLMAP_WITH_GDAL)"
             ) from None
         handle = _gdal.read_field_map(text)
         return cls._of(handle, Crs(handle.crs.name, handle.crs.wkt))
@@ -264,12 +265,12 @@ def _day(value: Date, argument: str) -> int:
 
 
 def map_handle(value: Any, argument: str) -> _core.FieldMap:
-    """What the library knows a map by; a folder is read."""
+    """What the library knows a map by; a path is read."""
     if _arrays.is_path(value):
         value = FieldMap.read(value)
     handle = value._handle if isinstance(value, FieldMap) else None
     if handle is None:
-        raise UsageError(f"{argument}: is no map that fuse returned, and no folder of one")
+        raise UsageError(f"{argument}: is no map that fuse returned, and no path of one")
     return handle
 
 

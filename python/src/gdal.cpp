@@ -26,9 +26,9 @@ PYBIND11_MODULE(_gdal, module) {
     const py::gil_scoped_release release;
     return std::make_shared<agricolmap::Cloud>(agricolmap::readBeside(frame, {path}));
   });
-  module.def("read_field_map", [](const std::string& folder) {
+  module.def("read_field_map", [](const std::string& path) {
     const py::gil_scoped_release release;
-    return std::make_shared<agricolmap::FieldMap>(agricolmap::readFieldMap(folder));
+    return std::make_shared<agricolmap::FieldMap>(agricolmap::readFieldMap(path));
   });
   module.def("read_map",
              [](const std::string& path, const std::string& crs, const std::string& target) {

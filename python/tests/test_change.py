@@ -176,6 +176,33 @@ def test_what_is_no_map_is_refused(tmp_path, folders):
         agricolmap.diff(folders[0], tmp_path)
 
 
+def test_surface_models_of_others(tmp_path, folders, program):
+    """Two bare GeoTIFFs, and one beside a map, as from the command line."""
+    before, after = (folder / "layers/surface.tif" for folder in folders)
+    with pytest.raises(agricolmap.UsageError, match="map_a: nothing is known of its errors.*error_a"):
+        agricolmap.diff(before, after)
+    with pytest.raises(agricolmap.UsageError, match="error_b"):
+        agricolmap.diff(folders[0], after)
+    for maps, flags, errors in (
+        ((before, after), ("--error-a", 0.01, 0.02, "--error-b", 0.02, 0.0), (0.01, 0.02)),
+        ((folders[0], after), ("--error-b", 0.02, 0.0), None),
+    ):
+        out = tmp_path / f"change_{errors is None}"
+        program("diff", *maps, "-o", out, "--no-pictures", *flags)
+        surface = json.loads((out / "change.json").read_text())["surface"]
+        change = agricolmap.diff(*maps, error_a=errors, error_b=(0.02, 0.0))
+        for name in ("compared", "rise", "fall"):
+            share = getattr(change, name)
+            assert share.cells == surface[name]["cells"] and share.cells > 0
+            assert share.volume_m3 == pytest.approx(surface[name]["volume_m3"], abs=1e-9)
+        assert change.median_detection_m == surface["median_detection_m"]
+        assert change.cover is None and change.warnings == ()
+    model = agricolmap.FieldMap.read(before)
+    assert np.isnan(model.cover).all() and np.isfinite(model.surface_m).any()
+    with pytest.raises(agricolmap.Error):
+        agricolmap.facts(model)
+
+
 def test_surfaces_far_above_zero_lose_nothing(maps):
     """Floats have 0.5 mm at 8 km: heights are compared above the maps' own zeros."""
     raised = []

@@ -58,6 +58,17 @@ void requireSettings(const DiffSettings& settings) {
                                change::kLeastSquare, change::kMostSquare));
 }
 
+/// As of a surface model, which has heights alone.
+void requireErrors(const FieldMap& map, const std::optional<MapError>& given,
+                   const std::string& which) {
+  const auto unknown = [](float error) { return std::isnan(error); };
+  if (given || !map.has_heights || !std::ranges::all_of(map.height_error_m, unknown)) return;
+  throw UsageError(
+      fmt::format("map_{0}: nothing is known of its errors; say which RMS is expected of its "
+                  "heights and places, in metres: error_{0}",
+                  which));
+}
+
 /// One system has many texts, so names decide.
 void requireSameCrs(const Crs& a, const Crs& b, std::vector<std::string>& warnings) {
   if (a.wkt.empty() != b.wkt.empty()) {
@@ -76,6 +87,8 @@ void requireSameCrs(const Crs& a, const Crs& b, std::vector<std::string>& warnin
 void warnOfFrames(const FieldMap& a, const FieldMap& b, const DiffSettings& settings,
                   std::vector<std::string>& warnings) {
   if (settings.frame_error || !a.has_heights || !b.has_heights || a.fixed == b.fixed) return;
+  // A surface model has no cloud: what is said of its errors holds its frame's.
+  if (a.fixed.points == 0 || b.fixed.points == 0) return;
   warnings.emplace_back(
       "the maps do not hang on one fixed cloud, and what two of them lie apart is in neither's "
       "errors; say what is expected of it, in metres: frame_error");
@@ -212,6 +225,8 @@ FieldChange diffMaps(const FieldMap& map_a, const FieldMap& map_b, const DiffSet
   const StopScope scope(control.stop);
   std::vector<std::string> warnings;
   requireSameCrs(map_a.crs, map_b.crs, warnings);
+  requireErrors(map_a, settings.error_a, "a");
+  requireErrors(map_b, settings.error_b, "b");
   warnOfFrames(map_a, map_b, settings, warnings);
   const bool flat = !map_a.has_heights || !map_b.has_heights;
   if (map_a.has_heights != map_b.has_heights) {

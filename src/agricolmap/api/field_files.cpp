@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -9,6 +11,8 @@
 #include "agricolmap/core/processor.hpp"
 #include "agricolmap/io/crs/crs.hpp"
 #include "agricolmap/io/raster/geo_reader.hpp"
+#include "agricolmap/io/raster/raster_place.hpp"
+#include "agricolmap/io/raster/surface_layer.hpp"
 #include "agricolmap/report/json/shared_map_file.hpp"
 
 namespace agricolmap {
@@ -54,6 +58,15 @@ class Reader {
   io::LayerShape shape_;
 };
 
+FieldMap emptyMap(const io::LayerShape& shape) {
+  FieldMap map;
+  map.rows = shape.frame.rows;
+  map.cols = shape.frame.cols;
+  map.cell_m = shape.frame.cell;
+  map.file_from_cell = fileFromCell(shape.frame, shape.origin);
+  return map;
+}
+
 /// Of a strip's file; without cells where there is none, as of one that owns nothing.
 FieldMap::Fine fineOf(const std::filesystem::path& path) {
   FieldMap::Fine fine;
@@ -78,18 +91,34 @@ FieldMap::Fine fineOf(const std::filesystem::path& path) {
   return fine;
 }
 
-}  // namespace
+/// A map that has no other layer.
+FieldMap surfaceAlone(const std::filesystem::path& path) {
+  const io::LayerShape shape = io::readLayerShape(path);
+  io::checkMetres(shape.name, io::placeOf(shape));
+  io::SurfaceLayer surface = io::readSurfaceLayer(path, shape);
+  FieldMap map = emptyMap(shape);
+  map.crs = io::crsFromWkt(shape.crs).value_or(Crs{});
+  map.surface_m = valuesOf(surface.height);
+  const std::vector<float> unknown(map.surface_m.size(), std::numeric_limits<float>::quiet_NaN());
+  for (auto* layer : {&map.ground_m, &map.plant_height_m, &map.excess_green, &map.cover,
+                      &map.density, &map.plane_error_m, &map.height_error_m}) {
+    *layer = unknown;
+  }
+  map.colour.resize(unknown.size());
+  map.date.resize(unknown.size());
+  std::ranges::transform(map.surface_m, std::back_inserter(map.source), [](float height) {
+    return static_cast<std::uint16_t>(std::isnan(height) ? 0 : 1);
+  });
+  map.fixed.name = shape.name;
+  map.warnings = std::move(surface.warnings);
+  return map;
+}
 
-FieldMap readFieldMap(const std::filesystem::path& folder) {
-  requireProcessor();
+FieldMap mapOfFolder(const std::filesystem::path& folder) {
   const report::StoredMap stored = report::readSharedMap(folder);
   const Reader reader(stored);
   const io::LayerShape& shape = reader.shape();
-  FieldMap map;
-  map.rows = shape.frame.rows;
-  map.cols = shape.frame.cols;
-  map.cell_m = shape.frame.cell;
-  map.file_from_cell = fileFromCell(shape.frame, shape.origin);
+  FieldMap map = emptyMap(shape);
   map.crs = stored.crs;
   if (map.crs.wkt.empty()) map.crs = io::crsFromWkt(shape.crs).value_or(Crs{});
   map.surface_m = reader.band<float>("surface");
@@ -113,6 +142,14 @@ FieldMap readFieldMap(const std::filesystem::path& folder) {
   }
   map.warnings = stored.warnings;
   return map;
+}
+
+}  // namespace
+
+FieldMap readFieldMap(const std::filesystem::path& path) {
+  requireProcessor();
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) ? surfaceAlone(path) : mapOfFolder(path);
 }
 
 }  // namespace agricolmap
