@@ -255,6 +255,7 @@ class ChainSolver {
       end.ahead[d] *= rhythm_.prior()[d];
       end.best[d] += own_[g] + std::log(rhythm_.prior()[d]);
     }
+    rescale(end.ahead, end.scale);
     // What is summed up next is added to the backward sums of those before.
     end.back.fill(0.0);
   }
@@ -264,6 +265,7 @@ class ChainSolver {
     Ends& end = ends_[g];
     const double stop = tail(g);
     addBack(end, stop, 1.0, {});
+    rescale(end.back, end.back_scale);
     eachBefore(g, [&](std::size_t before, double term) {
       const auto densities = steps(before, g);
       Phases sum{};
@@ -275,6 +277,14 @@ class ChainSolver {
       }
       addBack(ends_[before], end.back_scale + own_[g] + term, 0.0, sum);
     });
+  }
+
+  /// Every step multiplies by a density: of a thousand plants no double holds the product.
+  static void rescale(Phases& values, double& scale) {
+    const double most = *std::max_element(values.begin(), values.end());
+    if (!(most > 0.0)) return;
+    for (double& value : values) value /= most;
+    scale += std::log(most);
   }
 
   static void addBack(Ends& end, double scale, double all, const Phases& values) {

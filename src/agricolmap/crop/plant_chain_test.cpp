@@ -48,6 +48,22 @@ TEST(PlantChain, OfPlantsThatStandApartIsCertain) {
   for (const PlantGroup& plant : chain.plants) EXPECT_GT(plant.probability, 0.95);
 }
 
+// 600 m of beets drilled to the millimetre, and the loosest rhythm: the product of their densities
+// leaves the range of a double either way.
+TEST(PlantChain, OfALongRowIsThatOfAShortOne) {
+  for (const double looseness : {0.05, 0.12, 0.3}) {
+    StandModel model = usualModel();
+    model.jitter = looseness;
+    model.drift = 1.3 * looseness;
+    const Chain chain = chainOf(rowOf(3000), model);
+    EXPECT_NEAR(chain.expected, 3000.0, 15.0);
+    EXPECT_GT(chain.variance, 0.0);
+    double sum = 0.0;
+    for (const PlantGroup& plant : chain.plants) sum += plant.probability;
+    EXPECT_NEAR(sum, chain.expected, 15.0);
+  }
+}
+
 TEST(PlantChain, OfNothingIsEmpty) {
   const Chain chain = chainOf({}, usualModel());
   EXPECT_TRUE(chain.plants.empty());
