@@ -227,6 +227,8 @@ MapClouds openClouds(const FuseFiles& files, MapPlan& plan, const io::SwappedFol
     io::StreamOptions of_strip;
     of_strip.crs = clouds.crs;
     of_strip.read.marks = true;
+    of_strip.shown =
+        strip.cloud.empty() ? folder.path(strip.source.file).shown() : strip.cloud.string();
     // Read from the folder that is being made, so that an update sees what the first run saw.
     clouds.strips.push_back(io::streamCloud(folder.path(strip.source.file).file(), of_strip));
     strip.source.points = clouds.strips.back()->facts().points;

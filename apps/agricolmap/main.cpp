@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <new>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,15 @@ constexpr const char* kFooter =
     "failed; 130 interrupted.\n"
     "Lengths are metres, maps are LAS, LAZ, PLY, PCD, text or ORTHO.tif,DSM.tif, transforms map "
     "MOVING to FIXED file coordinates.";
+
+/// A map of a thousand strips has them all open, and a terminal allows 1024 files unless it is
+/// asked.
+void allowManyFiles() {
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= files.rlim_max) return;
+  files.rlim_cur = files.rlim_max;
+  std::ignore = ::setrlimit(RLIMIT_NOFILE, &files);
+}
 
 void setUpLogging(const Globals& globals) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("agricolmap"));
@@ -176,6 +187,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "agricolmap: {}{}\n", what, flags);
     return static_cast<int>(code);
   };
+  agricolmap::allowManyFiles();
   try {
     const ExitCode code = agricolmap::run(argc, argv);
     agricolmap::requireStdout();

@@ -313,7 +313,8 @@ void FileStream::passAll(bool marked, const MarkedVisit& visit) const {
 std::unique_ptr<PointStream> streamCloud(const std::filesystem::path& path,
                                          const StreamOptions& options) {
   auto mapped = std::make_unique<MappedFile>(path);
-  PointFile file = openPoints(*mapped, path.string(), options.read);
+  const std::string name = options.shown.empty() ? path.string() : options.shown;
+  PointFile file = openPoints(*mapped, name, options.read);
   if (file.source->points() > options.keep || file.source->marked()) {
     return std::make_unique<FileStream>(std::move(mapped), std::move(file), options,
                                         Dear::kSpilled);

@@ -17,7 +17,8 @@ struct StreamOptions {
   std::size_t keep = std::size_t{1} << 24;
   /// Hears how many points of how many a pass has seen, from the thread that passes.
   std::function<void(std::size_t seen, std::size_t of)> on_pass;
-  Crs crs;  ///< to be the cloud's
+  Crs crs;                 ///< to be the cloud's
+  std::string shown = {};  ///< what messages call the file; empty: its path
 };
 
 /// The points that `readCloud` would give, to the bit, as a stream. A file is decoded anew for each

@@ -18,9 +18,9 @@ PointSpill::PointSpill(std::size_t points, Kind kind, const std::string& source)
     : points_(points),
       kind_(kind),
       file_(scratchFolder(),
-            fmt::format("{}: its decoded points need {:.1f} GiB for a while in {}", source,
+            fmt::format("{}: its decoded points need {:.3g} GiB for a while in {}", source,
                         static_cast<double>(kind.bytes(points)) / kGiB, scratchFolder()),
-            "name another folder in TMPDIR, or convert the file to LAS, which needs no room") {
+            "name a folder with room in TMPDIR") {
   file_.reserve(kind.bytes(points));
 }
 
