@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ FieldMap levelMap(float height, float rise = 0.0F) {
   map.height_error_m.assign(cells, 0.01F);
   map.source.assign(cells, 1);
   map.fixed = {"june.laz", 800, 0};
+  map.crs = {"WGS 84 / UTM zone 32N", "PROJCRS[32]"};
   return map;
 }
 
@@ -100,9 +102,7 @@ TEST(DiffMaps, RefusesWhatMakesNoSense) {
   const FieldMap map = levelMap(0.1F);
   FieldMap other = map;
   other.crs = {"WGS 84 / UTM zone 33N", "PROJCRS[33]"};
-  FieldMap here = map;
-  here.crs = {"WGS 84 / UTM zone 32N", "PROJCRS[32]"};
-  EXPECT_THROW(diffMaps(here, other), InputError);
+  EXPECT_THROW(diffMaps(map, other), InputError);
   other = map;
   other.file_from_cell.translation().x() += 100.0;
   EXPECT_THROW(diffMaps(map, other), InputError);
@@ -116,6 +116,23 @@ TEST(DiffMaps, RefusesWhatMakesNoSense) {
   settings = {};
   settings.plots = {plotAt("far", 100.0)};
   EXPECT_THROW(diffMaps(map, map, settings), InputError);
+  settings.plots = {plotAt("torn", 0.5)};
+  settings.plots[0].corners[2].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(diffMaps(map, map, settings), UsageError);
+}
+
+TEST(DiffMaps, SaysWhatItTakesOfCoordinateSystems) {
+  const FieldMap map = levelMap(0.1F);
+  FieldMap other = map;
+  other.crs.wkt = "PROJCRS[32, in other words]";
+  DiffSettings settings;
+  EXPECT_EQ(diffMaps(map, other, settings).warnings.size(), 1U);
+  settings.same_crs = true;
+  EXPECT_TRUE(diffMaps(map, other, settings).warnings.empty());
+  settings.same_crs = false;
+  other.crs = {};
+  EXPECT_EQ(diffMaps(map, other, settings).warnings.size(), 1U);
+  EXPECT_TRUE(diffMaps(other, other, settings).warnings.empty());
 }
 
 TEST(RegisterBatch, MakesAFolderOfEachStrip) {
@@ -141,6 +158,14 @@ TEST(RegisterBatch, MakesAFolderOfEachStrip) {
   EXPECT_THROW(registerBatch("manifest", folder, settings), OutputError);
   settings.resume = true;
   EXPECT_TRUE(registerBatch("manifest", folder, settings)[0].kept);
+  settings.resume = false;
+  settings.overwrite = true;
+  // A listener's own failure is its caller's.
+  const auto fails = [](const BatchStrip&, std::size_t, std::size_t) -> void {
+    throw std::domain_error("enough");
+  };
+  EXPECT_THROW(registerBatch("manifest", folder, settings, {}, fails), std::domain_error);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a/transform.txt"));
   settings.shard = 3;
   EXPECT_THROW(registerBatch("manifest", folder, settings), UsageError);
   std::filesystem::remove_all(folder);

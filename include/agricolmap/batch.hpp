@@ -32,8 +32,9 @@ struct BatchSettings {
 /// What became of a strip.
 struct BatchStrip {
   std::string id;
-  std::string map;                             ///< the id of its map
-  std::filesystem::path folder;                ///< of its results; not there where it failed
+  std::string map;  ///< the id of its map
+  std::filesystem::path
+      folder;  ///< of its results; where it failed, of an earlier run or not there
   std::optional<Registration::Status> status;  ///< nothing: it failed, see `message`
   double plane_probability = 0.0;              ///< that it is right in the plane to 5 cm
   std::optional<double> expected_rms_m;        ///< in the plane
@@ -48,16 +49,17 @@ struct BatchStrip {
 };
 
 /// Hears of each strip that is done: of `todo` strips that are registered now it is number `done`.
-/// Called by one thread at a time, not always the same.
+/// Called by one thread at a time, not always the same. What it throws stops the batch and is
+/// thrown by registerBatch.
 using StripListener =
     std::function<void(const BatchStrip& strip, std::size_t done, std::size_t todo)>;
 
 /// Component batch. Registers the strips of a manifest (docs/batch.md), each to the folder
 /// `output`/ID, which appears whole or not at all; of all strips a summary. A strip that fails
-/// stops no other. Returns those that were chosen, in the manifest's order. Throws UsageError with
-/// all that is wrong in the manifest and for settings, InputError, OutputError when results are
-/// there that are neither to be kept nor replaced, Interrupted: what is done by then stays.
-/// Control::on_stage is not called.
+/// stops no other, and leaves what an earlier run made of it. Returns those that were chosen, in
+/// the manifest's order. Throws UsageError with all that is wrong in the manifest and for settings,
+/// InputError, OutputError when results are there that are neither to be kept nor replaced,
+/// Interrupted: what is done by then stays. Control::on_stage is not called.
 AGRICOLMAP_EXPORT std::vector<BatchStrip> registerBatch(const std::filesystem::path& manifest,
                                                         const std::filesystem::path& output,
                                                         const BatchSettings& settings = {},

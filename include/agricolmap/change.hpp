@@ -28,6 +28,9 @@ struct DiffSettings {
   std::optional<MapError> frame_error = std::nullopt;
   std::vector<Plot> plots = {};  ///< to compare in, too
   double grid_m = 0.0;  ///< side of squares to compare in, too, on round coordinates; 0: none
+  /// The caller knows that coordinates of both maps mean the same, as sameCrs of the component gdal
+  /// tells; else texts and names decide.
+  bool same_crs = false;
 };
 
 /// What changed. Values are row-major, row 0 is the southernmost; NaN where one of the maps knows
@@ -95,7 +98,7 @@ struct FieldChange {
 };
 
 /// Compares two maps of a field on the grid of the one with the coarser cells. Throws InputError
-/// when they are in different coordinate systems, do not overlap or know nothing in common, and
+/// when they say different coordinate systems, do not overlap or know nothing in common, and
 /// when there are plots but none where they are compared; UsageError, Interrupted.
 AGRICOLMAP_EXPORT FieldChange diffMaps(const FieldMap& map_a, const FieldMap& map_b,
                                        const DiffSettings& settings = {},

@@ -104,9 +104,9 @@ AGRICOLMAP_EXPORT FieldMap fuseClouds(const Cloud& fixed, const std::vector<Laid
                                       const Settings& options = {}, const Control& control = {},
                                       int fixed_date = 0);
 
-/// Component gdal. A map as the command line's `fuse` wrote it, by its folder, or a surface model of
-/// any program, a GeoTIFF. Surface and ground are as high as the files say; layers that it does not
-/// have are NaN, of a surface model all others and its errors. Throws InputError.
+/// Component gdal. A map as the command line's `fuse` wrote it, by its folder, or a surface model
+/// of any program, a GeoTIFF. Surface and ground are as high as the files say; layers that it does
+/// not have are NaN, of a surface model all others and its errors. Throws InputError.
 AGRICOLMAP_EXPORT FieldMap readFieldMap(const std::filesystem::path& path);
 
 /// A polygon of the file's coordinates and what it is called.

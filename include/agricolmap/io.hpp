@@ -83,6 +83,10 @@ struct CloudPair {
 /// that is not understood.
 AGRICOLMAP_EXPORT CloudPair readPair(const MapFile& fixed, const MapFile& moving);
 
+/// Component gdal. Whether both say the same horizontal coordinates, in whatever words; heights may
+/// be of different systems. Throws InputError for a `wkt` that is missing or not understood.
+AGRICOLMAP_EXPORT bool sameCrs(const Crs& a, const Crs& b);
+
 /// Component gdal. As readPair reads the moving one beside a fixed cloud in this frame.
 AGRICOLMAP_EXPORT Cloud readBeside(const Crs& frame, const MapFile& moving);
 

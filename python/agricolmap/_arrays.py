@@ -41,6 +41,14 @@ def numbers(value: Any, argument: str, needs: str) -> npt.NDArray[Any]:
     return array
 
 
+def number(value: Any, argument: str, needs: str) -> float:
+    """One of them, and finite."""
+    array = numbers(value, argument, f"a number: {needs}")
+    if array.ndim != 0 or not np.isfinite(array):
+        raise UsageError(f"{argument}: is {value!r}; give a number: {needs}")
+    return float(array)
+
+
 def points(value: Any, argument: str) -> Floats:
     """N×3 coordinates as float64, one row per point."""
     needs = "coordinates x, y, z in metres as float64, shape (N, 3)"

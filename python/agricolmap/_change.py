@@ -11,7 +11,7 @@ import numpy.typing as npt
 from . import _arrays, _core
 from ._arrays import Floats, PathLike
 from ._cloud import Crs
-from ._errors import UsageError
+from ._errors import InputError, UsageError
 from ._field import FieldMap, corners, map_handle
 from ._maps import Cells
 from ._register import Stop
@@ -52,10 +52,9 @@ class BeforeAfter:
     """A layer beside the surface, both times.
 
     Attributes:
-        cells: that the values are of: all that both maps know; heights of the whole only where both
-            have plants.
-        before, after: median of plant heights [m], of a part of the field with its soil; mean of
-            covers (0 to 1). NaN for a part of which nothing is known.
+        cells: that the values are of: all that both maps know; heights only where both have plants.
+        before, after: median of plant heights [m]; mean of covers (0 to 1). NaN for a part of which
+            nothing is known.
     """
 
     cells: int
@@ -202,8 +201,9 @@ def diff(
         _error(frame_error, "frame_error"),
     )
     named = corners(plots)
-    side = float(_arrays.numbers(grid, "grid", "a side in metres"))
-    values = _core.diff(*handles, errors, named, side, stop, _arrays.count(threads, "threads"))
+    side = _arrays.number(grid, "grid", "a side in metres")
+    same = _same_crs(*(handle.crs for handle in handles))
+    values = _core.diff(*handles, errors, named, side, same, stop, _arrays.count(threads, "threads"))
     for name in ("compared", "rise", "fall", "bare_ground"):
         values[name] = None if values[name] is None else Share(**values[name])
     for name in ("plant_height", "cover"):
@@ -217,6 +217,22 @@ def diff(
     known = [handle.crs for handle in handles if handle.crs.wkt]
     crs = Crs(known[0].name, known[0].wkt) if known else Crs()
     return Change(**values, crs=crs)
+
+
+def _same_crs(one: _core.Crs, other: _core.Crs) -> bool:
+    """Whether that is known. As texts of one system differ, GDAL says."""
+    if not one.wkt or not other.wkt or one.wkt == other.wkt:
+        return False
+    try:
+        from . import _gdal
+    except ImportError:
+        return False
+    if not _gdal.same_crs(one, other):
+        raise InputError(
+            f"map_a ({one.name}) and map_b ({other.name}) have different coordinate systems; bring "
+            "one into the other's"
+        )
+    return True
 
 
 def _error(value: Error, argument: str) -> Optional[Tuple[float, float]]:

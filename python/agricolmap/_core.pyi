@@ -150,6 +150,7 @@ def diff(
     ],
     plots: List[Tuple[str, _Floats]],
     grid: float,
+    same_crs: bool,
     stop: Optional[Any],
     threads: int,
     /,

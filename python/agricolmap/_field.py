@@ -282,5 +282,7 @@ def corners(plots: Optional[Mapping[str, npt.ArrayLike]]) -> List[Tuple[str, Flo
         array = _arrays.numbers(value, f"plots[{name!r}]", needs)
         if array.ndim != 2 or array.shape[1] != 2 or len(array) < 3:
             raise UsageError(f"plots[{name!r}]: has shape {array.shape}; give {needs}")
-        named.append((name, np.ascontiguousarray(array, dtype=np.float64)))
+        if not np.isfinite(array).all():
+            raise UsageError(f"plots[{name!r}]: has a corner that is not finite; give {needs}")
+        named.append((str(name), np.ascontiguousarray(array, dtype=np.float64)))
     return named

@@ -8,6 +8,8 @@ import os
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple, Union
 
+import numpy as np
+
 from . import _arrays
 from ._arrays import Floats, PathLike
 from ._errors import UsageError
@@ -22,7 +24,7 @@ class BatchEntry:
     Attributes:
         id: its name, which is that of its folder.
         map: the id of its map.
-        folder: with its results; not there where it failed.
+        folder: with its results; of one that failed those of an earlier run, or not there.
         status: None: it failed, and `message` says why.
         plane_probability: that it is right in the plane to 5 cm.
         expected_rms_m: in the plane [m]; None where there is no answer.
@@ -78,7 +80,7 @@ def batch(
     """Registers the strips of a manifest, each to a folder, as ``agricolmap batch`` does.
 
     A folder ``output/ID`` appears whole or not at all, whenever the program ends. A strip that fails
-    leaves none, and stops no other. Of all strips, ``summary.csv``, ``.json``, ``.html`` and
+    leaves what an earlier run made of it, and stops no other. Of all strips, ``summary.csv``, ``.json``, ``.html`` and
     ``.png`` are written into `output`.
 
     Args:
@@ -111,9 +113,11 @@ def batch(
     from . import _batch
 
     name, text = _manifest(manifest)
+    chosen = _items(items)
     part = (0, 0)
     if shard is not None:
-        numbers = tuple(_arrays.count(number, "shard") for number in shard)
+        given: Tuple[Any, ...] = tuple(shard) if isinstance(shard, Iterable) else ()
+        numbers = tuple(_arrays.count(number, "shard") for number in given)
         if len(numbers) != 2 or not 1 <= numbers[0] <= numbers[1]:
             raise UsageError(f"shard: is {shard!r}; give (i, n), i from 1 to n")
         part = numbers[0], numbers[1]
@@ -129,9 +133,9 @@ def batch(
         _arrays.path_of(output, "output"),
         text,
         (bool(resume), bool(overwrite)),
-        [str(item) for item in items or ()],
+        chosen,
         part,
-        (_arrays.count(jobs, "jobs"), float(memory), bool(pictures)),
+        (_arrays.count(jobs, "jobs"), _arrays.number(memory, "memory", "bytes"), bool(pictures)),
         None if progress is None else tell,
         stop,
         _arrays.count(threads, "threads"),
@@ -143,6 +147,18 @@ def _entry(values: Dict[str, Any]) -> BatchEntry:
     status = values.pop("status")
     folder = os.fspath(values.pop("folder"))
     return BatchEntry(**values, folder=folder, status=None if status is None else Status(status))
+
+
+def _items(items: Any) -> List[str]:
+    """None of them: all strips."""
+    if items is None:
+        return []
+    if isinstance(items, (str, bytes)) or not isinstance(items, Iterable):
+        raise UsageError("items: give a list of ids or numbers")
+    chosen = [str(item) for item in items]
+    if not chosen:
+        raise UsageError("items: is empty; give those to register, or None for all")
+    return chosen
 
 
 def _manifest(value: Any) -> Tuple[str, Optional[str]]:
@@ -160,6 +176,14 @@ def _manifest(value: Any) -> Tuple[str, Optional[str]]:
             return os.fspath(item)
         if isinstance(item, Mapping):
             return dict(item)
+        if isinstance(item, np.generic):
+            return item.item()
         raise UsageError(f"manifest: has a {type(item).__name__}; give texts, numbers and dates")
 
-    return "manifest", json.dumps(dict(value), default=plain)
+    try:
+        # As it stands: what JSON escapes beyond 16 bits is no YAML.
+        return "manifest", json.dumps(dict(value), default=plain, ensure_ascii=False)
+    except UsageError:
+        raise
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"manifest: {error}; give texts, numbers and dates") from None

@@ -11,7 +11,7 @@ from typing import Any, Dict, List, Optional, Tuple
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _core
+from . import _arrays, _core, _files
 from ._arrays import Floats, PathLike
 from ._cloud import Cloud, CloudLike, Crs, cloud_of, pair_of
 from ._errors import OutputError, UsageError
@@ -297,7 +297,7 @@ class Registration:
             folder: made where it is not there.
             pictures: PNG files beside the report, maps and points in the page; else this has words
                 and numbers only.
-            overwrite: replace a report that is there.
+            overwrite: replace a report, its pictures and page that are there.
 
         Returns:
             Names of the files in the folder. A build without pictures writes no page.
@@ -308,16 +308,19 @@ class Registration:
             UsageError: for pictures in a build without them, and when a file holds another cloud now.
         """
         place = _arrays.path_of(folder, "folder")
-        report = os.path.join(place, "registration.json")
-        if os.path.exists(report) and not overwrite:
-            raise OutputError(f"{report}: exists already", "overwrite")
+        for name in ("registration.json", "report.html"):
+            if os.path.exists(os.path.join(place, name)) and not overwrite:
+                raise OutputError(f"{os.path.join(place, name)}: exists already", "overwrite")
         try:
             os.makedirs(place, exist_ok=True)
         except OSError as error:
             raise OutputError(f"{place}: cannot be made: {error.strerror}") from None
         names = self._write_pictures(place, pictures)
         self._handle.write_report(place, [name for name in names if name.endswith(".png")])
-        return ["registration.json", *names]
+        names.insert(0, "registration.json")
+        # Of another registration, which had pictures of things that this one has not.
+        _files.remove(place, {"report.html", *_files.PICTURES} - set(names))
+        return names
 
     def _write_pictures(self, folder: str, drawn: bool) -> List[str]:
         """And the page, which has them, too."""
@@ -334,7 +337,11 @@ class Registration:
             return ["report.html"]
         fixed, moving = pair_of(*self._clouds)
         names = _pictures.write_pictures(folder, self._handle)
-        _pictures.write_page(folder, self._handle, names, fixed._handle, moving._handle)
+        try:
+            _pictures.write_page(folder, self._handle, names, fixed._handle, moving._handle)
+        except BaseException:
+            _files.remove(folder, names)
+            raise
         return [*names, "report.html"]
 
     def __str__(self) -> str:

@@ -97,7 +97,7 @@ py::dict valuesOf(const FieldChange& change) {
 }
 
 py::dict diff(const std::shared_ptr<FieldMap>& map_a, const std::shared_ptr<FieldMap>& map_b,
-              const std::tuple<Error, Error, Error>& errors, const NamedPlots& plots, double grid,
+              const std::tuple<Error, Error, Error>& errors, const NamedPlots& plots, double grid, bool same_crs,
               const py::object& stop, int threads) {
   DiffSettings settings;
   settings.error_a = errorOf(std::get<0>(errors));
@@ -105,6 +105,7 @@ py::dict diff(const std::shared_ptr<FieldMap>& map_a, const std::shared_ptr<Fiel
   settings.frame_error = errorOf(std::get<2>(errors));
   settings.plots = plotsOf(plots);
   settings.grid_m = grid;
+  settings.same_crs = same_crs;
   return valuesOf(waitFor({py::none(), stop}, threads, [&](const Control& control) {
     return diffMaps(*map_a, *map_b, settings, control);
   }));

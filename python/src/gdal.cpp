@@ -30,6 +30,7 @@ PYBIND11_MODULE(_gdal, module) {
     const py::gil_scoped_release release;
     return std::make_shared<agricolmap::FieldMap>(agricolmap::readFieldMap(path));
   });
+  module.def("same_crs", &agricolmap::sameCrs);
   module.def("read_map",
              [](const std::string& path, const std::string& crs, const std::string& target) {
                const py::gil_scoped_release release;

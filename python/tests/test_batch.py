@@ -10,6 +10,7 @@ import textwrap
 import threading
 
 import agricolmap
+import numpy as np
 import pytest
 from agricolmap import Status
 
@@ -117,6 +118,13 @@ def test_a_strip_that_fails_stops_no_other(manifest, tmp_path):
     assert first.failed and first.status is None and "bad.ply" in first.message
     assert first.expected_rms_m is None and not os.path.exists(first.folder)
     assert second.accepted
+    # What was made before stays, and is said to.
+    strips[1] = {**strips[1], "file": bad, "date": np.int64(20260601)}
+    (kept,) = agricolmap.batch(
+        {**manifest, "strips": strips}, tmp_path / "out", items=[second.id], overwrite=True
+    )
+    assert kept.failed and kept.message.endswith("the results of an earlier run stay")
+    assert os.path.exists(os.path.join(kept.folder, "registration.json"))
 
 
 def test_what_makes_no_sense_is_named(manifest, tmp_path):
@@ -125,6 +133,10 @@ def test_what_makes_no_sense_is_named(manifest, tmp_path):
         ({"items": ["d"]}, agricolmap.UsageError, "item d: is neither"),
         ({"items": ["a"], "shard": (1, 2)}, agricolmap.UsageError, "do not go together"),
         ({"jobs": -1}, agricolmap.UsageError, "jobs: is -1"),
+        ({"items": []}, agricolmap.UsageError, "items: is empty"),
+        ({"items": "a"}, agricolmap.UsageError, "items: give a list"),
+        ({"shard": 5}, agricolmap.UsageError, "shard: is 5"),
+        ({"memory": "4 GB"}, agricolmap.UsageError, "memory: .*give a number: bytes"),
         ({"memory": -1}, agricolmap.UsageError, "memory"),
         ({"progress": 3}, agricolmap.UsageError, "progress: cannot be called"),
     ]:
@@ -132,6 +144,10 @@ def test_what_makes_no_sense_is_named(manifest, tmp_path):
             agricolmap.batch(manifest, tmp_path / "out", **words)
     with pytest.raises(agricolmap.UsageError, match=r"manifest:\d+: .*fle"):
         agricolmap.batch({**manifest, "strips": [{"fle": "a.ply"}]}, tmp_path / "out")
+    with pytest.raises(agricolmap.UsageError, match="manifest: keys must be"):
+        agricolmap.batch({**manifest, ("a", 1): 2}, tmp_path / "out")
+    with pytest.raises(agricolmap.UsageError, match="\N{EAR OF MAIZE}.ply: there is no such file"):
+        agricolmap.batch({**manifest, "strips": [{"map": "field", "file": "\N{EAR OF MAIZE}.ply"}]}, tmp_path / "out")
     with pytest.raises(agricolmap.UsageError, match="manifest: is a list"):
         agricolmap.batch([], tmp_path / "out")
     with pytest.raises(agricolmap.InputError, match="no such file"):

@@ -100,6 +100,8 @@ def test_what_cannot_be_compared_is_named(maps):
         ({"frame_error": (1, -1)}, agricolmap.UsageError, "frame_error: is 1, -1"),
         ({"error_b": (101, 0)}, agricolmap.UsageError, "from 0 to 100 m"),
         ({"grid": 0.01}, agricolmap.UsageError, "grid: is 0.01 m; must be from 0.1 to 1000 m"),
+        ({"grid": [1, 2]}, agricolmap.UsageError, r"grid: is \[1, 2\]"),
+        ({"plots": {"a": [[0, 0], [1, 0], [1, np.nan]]}}, agricolmap.UsageError, "not finite"),
         ({"plots": {"a": [[0, 0]]}}, agricolmap.UsageError, r"plots\['a'\]: has shape"),
         ({"plots": {"a": [[0, 0], [1, 0], [1, 1]]}}, agricolmap.InputError, "any of the 1 plots"),
     ]:
@@ -111,6 +113,29 @@ def test_what_cannot_be_compared_is_named(maps):
     stop.set()
     with pytest.raises(agricolmap.Interrupted):
         agricolmap.diff(before, after, stop=stop)
+
+
+def test_coordinate_systems_are_compared_and_not_their_names(folders, tmp_path):
+    """As the program does; one name may stand for two systems, and two texts for one."""
+    gdal = pytest.importorskip("osgeo.gdal")
+    osr = pytest.importorskip("osgeo.osr")
+    errors = {"error_a": (0.01, 0.0), "error_b": (0.01, 0.0)}
+
+    def surface(name, system):
+        path = str(tmp_path / f"{name}.tif")
+        reference = osr.SpatialReference()
+        reference.SetFromUserInput(system)
+        copy = gdal.Translate(path, str(folders[0] / "layers/surface.tif"))
+        copy.SetProjection(reference.ExportToWkt())
+        return path
+
+    grid = "+proj=tmerc +lat_0=0 +lon_0={} +k=0.9996 +x_0=500000 +y_0=0 +ellps=WGS84 +units=m"
+    west, east = surface("west", grid.format(9.2)), surface("east", grid.format(15.7))
+    with pytest.raises(agricolmap.InputError, match="different coordinate systems"):
+        agricolmap.diff(west, east, **errors)
+    plain, tall = surface("plain", "EPSG:32632"), surface("tall", "EPSG:32632+5773")
+    change = agricolmap.diff(plain, tall, **errors)
+    assert change.compared.mean_m == 0 and change.warnings == ()
 
 
 def test_folders_are_compared_as_the_program_does(folders, program, tmp_path):

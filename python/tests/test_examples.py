@@ -1,5 +1,6 @@
 """The examples run, each in a folder of its own."""
 
+import importlib.util
 import subprocess
 import sys
 from pathlib import Path
@@ -46,7 +47,10 @@ def test_examples_run(name, pairs, tmp_path):
 
 
 def test_examples_say_how_they_are_called(tmp_path):
+    drawing = importlib.util.find_spec("matplotlib") is not None
     for file in EXAMPLES.glob("*.py"):
+        if file.name.startswith("07") and not drawing:
+            continue
         ran = subprocess.run(
             [sys.executable, "-B", file], capture_output=True, text=True, cwd=tmp_path
         )

@@ -111,7 +111,10 @@ def test_reports_and_pictures_are_written(result, tmp_path):
     with pytest.raises(agricolmap.OutputError, match="exists already.*overwrite=True"):
         result.write_report(tmp_path / "new")
     again = result.write_report(tmp_path / "new", pictures=False, overwrite=True)
-    assert again == ["registration.json", "report.html"]
+    assert sorted(again) == sorted(path.name for path in (tmp_path / "new").iterdir())
+    (tmp_path / "new/registration.json").unlink()
+    with pytest.raises(agricolmap.OutputError, match="report.html: exists already"):
+        result.write_report(tmp_path / "new")
     (tmp_path / "file").write_text("")
     with pytest.raises(agricolmap.OutputError, match="file"):
         result.write_report(tmp_path / "file" / "inside")

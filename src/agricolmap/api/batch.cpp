@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <exception>
+#include <stop_token>
 #include <utility>
 
 #include "agricolmap/api/checks.hpp"
@@ -79,7 +81,7 @@ std::vector<std::size_t> chosenOf(const batch::Manifest& manifest, const BatchSe
 }
 
 batch::RunOptions runOptions(const std::filesystem::path& output, const BatchSettings& settings,
-                             const Control& control) {
+                             int threads, const std::stop_token& stop) {
   batch::RunOptions options;
   options.output = output;
   options.resume = settings.resume;
@@ -87,11 +89,30 @@ batch::RunOptions runOptions(const std::filesystem::path& output, const BatchSet
   options.jobs = static_cast<std::size_t>(settings.jobs);
   options.memory = settings.memory_bytes;
   options.pictures = settings.pictures;
-  options.threads = control.threads;
+  options.threads = threads;
   options.version = version();
-  options.stop = control.stop;
+  options.stop = stop;
   return options;
 }
+
+/// The caller's listener. What it throws must not end a thread of the batch: it stops the batch
+/// and is thrown when that has ended.
+struct Hearing {
+  const StripListener& listener;
+  const std::filesystem::path& output;
+  std::stop_source& stop;
+  std::exception_ptr raised = nullptr;
+
+  void tell(const batch::Record& record, const batch::Progress& progress) {
+    if (!listener || raised) return;
+    try {
+      listener(publicStrip(record, output / record.id, false), progress.worked, progress.todo);
+    } catch (...) {
+      raised = std::current_exception();
+      stop.request_stop();
+    }
+  }
+};
 
 }  // namespace
 
@@ -102,20 +123,28 @@ std::vector<BatchStrip> registerBatch(const std::filesystem::path& manifest_file
   requireProcessor();
   requireSettings(settings);
   const ThreadLimit limit = threadLimit(control);
-  const StopScope scope(control.stop);
+  std::stop_source stop;
+  const std::stop_callback passed_on(control.stop, [&] { stop.request_stop(); });
+  const StopScope scope(stop.get_token());
   const batch::Manifest manifest = manifestOf(manifest_file, settings);
   const std::vector<std::size_t> chosen = chosenOf(manifest, settings);
-  const batch::RunOptions options = runOptions(output, settings, control);
+  const batch::RunOptions options = runOptions(output, settings, control.threads, stop.get_token());
+  Hearing hears{on_strip, output, stop};
   batch::Listener listener;
   listener.on_strip = [&](const batch::Record& record, const batch::Progress& progress) {
-    if (!on_strip) return;
-    on_strip(publicStrip(record, output / record.id, false), progress.worked, progress.todo);
+    hears.tell(record, progress);
   };
   const Stopwatch watch;
   batch::Batch batch(manifest, options, listener);
   const bool whole = settings.items.empty() && settings.shards == 0;
-  batch.run(chosen, whole && options.pictures);
-  throwIfInterrupted();
+  try {
+    batch.run(chosen, whole && options.pictures && report::canDraw());
+    throwIfInterrupted();
+  } catch (const Interrupted&) {
+    if (hears.raised) std::rethrow_exception(hears.raised);
+    throw;
+  }
+  if (hears.raised) std::rethrow_exception(hears.raised);
   if (whole) batch.writeSummary(watch.seconds());
   std::vector<BatchStrip> strips;
   for (const std::size_t i : chosen) {

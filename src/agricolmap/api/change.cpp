@@ -69,18 +69,24 @@ void requireErrors(const FieldMap& map, const std::optional<MapError>& given,
                   which));
 }
 
-/// One system has many texts, so names decide.
-void requireSameCrs(const Crs& a, const Crs& b, std::vector<std::string>& warnings) {
+/// One system has many texts, so names decide where these differ; but one name may have two, too.
+void requireSameCrs(const Crs& a, const Crs& b, bool known, std::vector<std::string>& warnings) {
+  if (known) return;
+  const bool named = !a.name.empty() && !b.name.empty();
+  if (named && a.name != b.name && (a.wkt.empty() || a.wkt != b.wkt)) {
+    throw InputError(fmt::format(
+        "the maps have different coordinate systems, {} and {}; bring one into the other's", a.name,
+        b.name));
+  }
   if (a.wkt.empty() != b.wkt.empty()) {
     warnings.push_back(
         fmt::format("the coordinate system of the {} map is not known; taken to be the other's",
                     a.wkt.empty() ? "first" : "second"));
+  } else if (a.wkt != b.wkt) {
+    warnings.push_back(fmt::format(
+        "the coordinate systems of the maps are told in different words; taken to be one, {}",
+        a.name.empty() ? b.name : a.name));
   }
-  const bool said = !a.name.empty() && !b.name.empty();
-  if (!said || a.name == b.name || a.wkt == b.wkt) return;
-  throw InputError(fmt::format(
-      "the maps have different coordinate systems, {} and {}; bring one into the other's", a.name,
-      b.name));
 }
 
 /// What two drone's maps lie apart is in no map's errors.
@@ -211,7 +217,8 @@ FieldChange publicChange(const change::Comparison& compared, const Ground& groun
   found.rise = shareOf(compared.totals.rise);
   found.fall = shareOf(compared.totals.fall);
   found.median_detection_m = compared.totals.median_detection;
-  if (compared.totals.stable) found.bare_ground = shareOf(*compared.totals.stable);
+  if (compared.totals.stable && !compared.flat)
+    found.bare_ground = shareOf(*compared.totals.stable);
   return found;
 }
 
@@ -224,7 +231,7 @@ FieldChange diffMaps(const FieldMap& map_a, const FieldMap& map_b, const DiffSet
   const ThreadLimit limit = threadLimit(control);
   const StopScope scope(control.stop);
   std::vector<std::string> warnings;
-  requireSameCrs(map_a.crs, map_b.crs, warnings);
+  requireSameCrs(map_a.crs, map_b.crs, settings.same_crs, warnings);
   requireErrors(map_a, settings.error_a, "a");
   requireErrors(map_b, settings.error_b, "b");
   warnOfFrames(map_a, map_b, settings, warnings);

@@ -26,6 +26,12 @@ std::vector<crop::Plot> plotsAbout(const Eigen::Vector2d& origin, const std::vec
       throw UsageError(fmt::format("plot {}: has {} corners; give three or more", plot.name,
                                    plot.corners.size()));
     }
+    for (const Eigen::Vector2d& corner : plot.corners) {
+      if (!corner.allFinite()) {
+        throw UsageError(fmt::format("plot {}: has a corner at {:g}, {:g}; give finite numbers",
+                                     plot.name, corner.x(), corner.y()));
+      }
+    }
     crop::Plot& added = moved.emplace_back(crop::Plot{plot.name, plot.corners});
     for (Eigen::Vector2d& corner : added.corners) corner -= origin;
   }

@@ -5,6 +5,7 @@
 #include "agricolmap/core/parallel.hpp"
 #include "agricolmap/core/processor.hpp"
 #include "agricolmap/io.hpp"
+#include "agricolmap/io/raster/raster_place.hpp"
 
 namespace agricolmap {
 namespace {
@@ -22,6 +23,12 @@ void addWarnings(const io::CommonFrame& frame, Cloud& cloud) {
 }
 
 }  // namespace
+
+bool sameCrs(const Crs& a, const Crs& b) {
+  requireProcessor();
+  const auto nameOf = [](const Crs& crs) { return crs.name.empty() ? "a map" : crs.name; };
+  return io::sameHorizontally(nameOf(a), a.wkt, nameOf(b), b.wkt);
+}
 
 CloudPair readPair(const MapFile& fixed, const MapFile& moving) {
   requireProcessor();

@@ -166,7 +166,9 @@ nlohmann::ordered_json reportOf(const Cloud& fixed, const Cloud& moving,
   info.threads = asked.threads;
   info.preset = asked.preset;
   info.prior = asked.guess;
-  info.prior_source = "given by the caller";
+  // None of its own is what the command line says of a pair without a guess.
+  const bool none = asked.guess.matrix().isIdentity(0.0);
+  info.prior_source = none ? "coordinates as they stand" : "given by the caller";
   info.options = config::toJson(optionTable(in_force));
   return report::registrationJson(CloudStream(fixed), moving, found, monitor, info);
 }

@@ -9,6 +9,7 @@ FineLayers fineLayers(const SharedMap& map, std::size_t number, const map::GridM
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const FusedStrip& strip = map.strips[number];
   const Tone tone = match_colours ? strip.tone : Tone{};
+  const bool heights = !map.flat && !strip.flat;
   FineLayers fine;
   for (Raster<float>* raster :
        {&fine.surface, &fine.ground, &fine.plant_height, &fine.exg, &fine.cover, &fine.density}) {
@@ -23,9 +24,11 @@ FineLayers fineLayers(const SharedMap& map, std::size_t number, const map::GridM
       const int row = strip.cells.row + r / map.lattice.factor;
       const int col = strip.cells.col + c / map.lattice.factor;
       if (!own.valid(i) || map.layers.source(row, col) != strip.code) continue;
-      fine.surface[i] = own.height[i];
-      fine.ground[i] = map.layers.ground(row, col);
-      fine.plant_height[i] = own.height[i] - map.layers.ground(row, col);
+      if (heights) {
+        fine.surface[i] = own.height[i];
+        fine.ground[i] = map.layers.ground(row, col);
+        fine.plant_height[i] = own.height[i] - map.layers.ground(row, col);
+      }
       fine.cover[i] = strip.greenness.cover(own.exg[i]);
       fine.density[i] = own.weight[i] / area;
       fine.colour[i] = tone(own.colour[i]);

@@ -70,22 +70,27 @@ void adviseGuess(const PriorUncertainty& guess, std::vector<std::string>& remedi
   }
 }
 
-/// Where the answer is as far from the guess as it may be: the right one may be farther.
-bool atTheEdge(const Finding& finding, const SearchSpace& space) {
+/// The limits of the guess that the answer is as far from it as: the right one may be farther.
+/// Empty: none.
+std::string edgeReached(const Finding& finding, const SearchSpace& space) {
   const Eigen::Vector2d moved = finding.pose * space.centre - space.centre;
   const HorizontalParts parts =
       splitHorizontal(space.scale_axes.transpose() * finding.pose.linear() * space.scale_axes);
   const PriorUncertainty& guess = space.uncertainty;
-  return moved.norm() > kAtTheEdge * guess.translation ||
-         (guess.heading_deg < 180.0 &&
-          degrees(std::abs(parts.yaw)) > kAtTheEdge * guess.heading_deg);
+  std::vector<std::string> reached;
+  if (moved.norm() > kAtTheEdge * guess.translation) {
+    reached.push_back(fmt::format("{:.3g} m", guess.translation));
+  }
+  if (guess.heading_deg < 180.0 && degrees(std::abs(parts.yaw)) > kAtTheEdge * guess.heading_deg) {
+    reached.push_back(fmt::format("{:.3g} deg", guess.heading_deg));
+  }
+  return fmt::format("{}", fmt::join(reached, " and "));
 }
 
 /// What is wrong before anything is compared: the guess, or the files. True where one is told.
 bool adviseInputs(const Verdict& verdict, const Finding& finding, const SearchSpace& space,
                   std::vector<std::string>& remedies) {
   const std::size_t before = remedies.size();
-  const PriorUncertainty& guess = space.uncertainty;
   if (verdict.place_probability >= kRightPlace) return false;
   if (finding.guessed_overlap < kBesideTheMap) {
     remedies.push_back(fmt::format(
@@ -93,12 +98,12 @@ bool adviseInputs(const Verdict& verdict, const Finding& finding, const SearchSp
         "strip on it",
         100.0 * finding.guessed_overlap));
   }
-  if (verdict.status == Status::kRejected && atTheEdge(finding, space)) {
+  const std::string edge = edgeReached(finding, space);
+  if (verdict.status == Status::kRejected && !edge.empty()) {
     remedies.push_back(
-        fmt::format("if the guess may be wrong by more than {:.3g} m and {:.3g} deg, say so: the "
-                    "best answer is "
-                    "as far from it as that allows",
-                    guess.translation, guess.heading_deg));
+        fmt::format("if the guess may be wrong by more than {}, say so: the best answer is as far "
+                    "from it as that allows",
+                    edge));
   }
   const bool told = remedies.size() > before;
   if (verdict.status == Status::kRejected && verdict.place_probability < kNoPlace) {

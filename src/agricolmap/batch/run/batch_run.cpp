@@ -272,13 +272,19 @@ Record Batch::registered(std::size_t index, SharedFixed& shared) const {
 
 void Batch::doStrip(std::size_t index, SharedFixed& shared) {
   const StopScope scope(options_.stop);
-  const auto failed = [&](const std::string& what, ErrorKind kind) {
-    Record record = recordOf(manifest_.strips[index], manifest_);
+  Record record;
+  ErrorKind kind = ErrorKind::kInternal;
+  const auto failed = [&](const std::string& what, ErrorKind why) {
+    record = recordOf(manifest_.strips[index], manifest_);
     record.message = what;
-    tell(index, std::move(record), kind);
+    kind = why;
+    // A disk that is not there for an hour must not cost what was made of all strips before.
+    std::error_code ignored;
+    if (!fs::exists(folderOf(index) / kRecordName, ignored)) return;
+    record.message += "; the results of an earlier run stay";
   };
   try {
-    tell(index, registered(index, shared), ErrorKind::kInternal);
+    record = registered(index, shared);
   } catch (const Interrupted&) {
     return;
   } catch (const Error& error) {
@@ -288,6 +294,7 @@ void Batch::doStrip(std::size_t index, SharedFixed& shared) {
   } catch (const std::exception& error) {
     failed(error.what(), ErrorKind::kInternal);
   }
+  tell(index, std::move(record), kind);
 }
 
 /// Notes what became of a strip and says it.

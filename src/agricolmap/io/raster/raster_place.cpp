@@ -14,16 +14,27 @@ namespace {
 
 constexpr double kMetreTolerance = 1e-6;
 
-OGRSpatialReference horizontalCrs(const RasterPlace& place, const std::string& name) {
+OGRSpatialReference horizontalCrs(const std::string& wkt, const std::string& name) {
   OGRSpatialReference crs;
-  if (crs.importFromWkt(place.crs.c_str()) != OGRERR_NONE) {
+  if (crs.importFromWkt(wkt.c_str()) != OGRERR_NONE) {
     throw InputError(fmt::format("{}: its coordinate system cannot be understood", name));
   }
   if (crs.IsCompound() != 0) crs.StripVertical();
   return crs;
 }
 
+bool areSame(const OGRSpatialReference& one, const OGRSpatialReference& other) {
+  const char* const lenient[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT",
+                                 nullptr};
+  return one.IsSame(&other, lenient) != 0;
+}
+
 }  // namespace
+
+bool sameHorizontally(const std::string& name, const std::string& wkt,
+                      const std::string& other_name, const std::string& other_wkt) {
+  return areSame(horizontalCrs(wkt, name), horizontalCrs(other_wkt, other_name));
+}
 
 void checkGeoreference(const std::string& name, const RasterPlace& place) {
   if (!place.world_from_pixel) {
@@ -40,7 +51,7 @@ void checkMetres(const std::string& name, const RasterPlace& place) {
   checkGeoreference(name, place);
   if (place.crs.empty()) return;
   requireProjDatabase();
-  const OGRSpatialReference crs = horizontalCrs(place, name);
+  const OGRSpatialReference crs = horizontalCrs(place.crs, name);
   if (crs.IsGeographic() != 0 || crs.IsGeocentric() != 0) {
     throw InputError(fmt::format(
         "{}: its coordinates are degrees, not metres; reproject it: gdalwarp -t_srs EPSG:326<zone> "
@@ -66,11 +77,9 @@ std::optional<std::string> checkSameCrs(const std::string& name, const RasterPla
         "{}: coordinate system not given; taken as metres in the same one for both rasters",
         place.crs.empty() ? name : other_name);
   }
-  const OGRSpatialReference one = horizontalCrs(place, name);
-  const OGRSpatialReference other = horizontalCrs(other_place, other_name);
-  const char* const lenient[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT",
-                                 nullptr};
-  if (one.IsSame(&other, lenient) == 0) {
+  const OGRSpatialReference one = horizontalCrs(place.crs, name);
+  const OGRSpatialReference other = horizontalCrs(other_place.crs, other_name);
+  if (!areSame(one, other)) {
     throw InputError(fmt::format(
         "{} ({}) and {} ({}) have different coordinate systems; reproject one with gdalwarp -t_srs",
         name, one.GetName(), other_name, other.GetName()));

@@ -14,6 +14,11 @@ void checkGeoreference(const std::string& name, const RasterPlace& place);
 /// Throws InputError unless the raster `name` is georeferenced in metres.
 void checkMetres(const std::string& name, const RasterPlace& place);
 
+/// Whether both coordinate systems have the same horizontal part. Throws InputError for one that is
+/// not understood; names are of what has them.
+bool sameHorizontally(const std::string& name, const std::string& wkt,
+                      const std::string& other_name, const std::string& other_wkt);
+
 /// Throws InputError when both rasters say their coordinate systems and these differ. A warning
 /// when one does not say.
 std::optional<std::string> checkSameCrs(const std::string& name, const RasterPlace& place,

@@ -36,6 +36,11 @@ void checkGeoreference(const std::string& name, const RasterPlace& /*place*/) { 
 
 void checkMetres(const std::string& name, const RasterPlace& /*place*/) { refuse(name); }
 
+bool sameHorizontally(const std::string& name, const std::string& /*wkt*/,
+                      const std::string& /*other_name*/, const std::string& /*other_wkt*/) {
+  refuse(name);
+}
+
 std::optional<std::string> checkSameCrs(const std::string& name, const RasterPlace& /*place*/,
                                         const std::string& /*other_name*/,
                                         const RasterPlace& /*other_place*/) {

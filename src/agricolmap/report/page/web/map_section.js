@@ -23,7 +23,7 @@ const middleOf = (corners) => [0, 1].map((k) =>
 /** Everything that can lie on the map. */
 function sceneOf(report, facts, maps) {
   const best = report.status === "accepted" ? "Registered" : "Best answer";
-  const came = unguessed(facts) ? "As it came" : "As guessed";
+  const came = unguessed(report, facts) ? "As it came" : "As guessed";
   const base = maps.fixed.map((json) => new Picture(json, json.local_from_image));
   const strip = new Picture(maps.moving.picture, maps.moving.before);
   const bent = maps.moving.straight ? new Picture(maps.moving.straight, maps.moving.after) : strip;
@@ -79,7 +79,7 @@ export function zoomButtons(view, sights) {
 export function mapSection(report, facts, maps) {
   const scene = sceneOf(report, facts, maps);
   const layers = LAYERS.filter(([name]) => scene.pictures.every((picture) => picture.has(name)));
-  const start = unguessed(facts) && report.transform ? "drone" : "guess";
+  const start = unguessed(report, facts) && report.transform ? "drone" : "guess";
   const state = { layer: layers[0][0], compare: start, outline: true, blocks: false, place: 0 };
   const view = new MapView(scene, state);
   const legend = el("div", { class: "legend" });

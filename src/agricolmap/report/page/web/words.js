@@ -38,7 +38,7 @@ function stretch(parts) {
 }
 
 /** Whether there was no guess to measure from. */
-export const unguessed = (facts) =>
+export const unguessed = (report, facts) => report.prior.source === "coordinates as they stand" &&
   Number(facts.options.find((o) => o.path === "prior.translation").value) >= 1e6;
 
 /** Where the strip lies against its guess. */
@@ -47,7 +47,7 @@ export function placeWords(report, facts) {
   const parts = report.transform.parts;
   const [x, y, z] = parts.shift_m;
   const sense = parts.yaw_deg < 0 ? "clockwise" : "anticlockwise";
-  const from = unguessed(facts) ? "where its own coordinates put it (no guess was given)" : "where the guess put it";
+  const from = unguessed(report, facts) ? "where its own coordinates put it (no guess was given)" : "where the guess put it";
   const far = length(Math.hypot(x, y));
   const stretched = stretch(parts);
   // Of a place that may be wrong no more than what tells whether it can be right.
@@ -140,7 +140,7 @@ export function figures(report, facts) {
   const parts = report.transform.parts;
   const right = ["Right to 5 cm", percent(report.plane_probability), "probability, in the plane"];
   const moved = ["Moved", length(Math.hypot(parts.shift_m[0], parts.shift_m[1])),
-    `${unguessed(facts) ? "without a guess" : "from the guess"}, turned ${degrees(Math.abs(parts.yaw_deg))} ` +
+    `${unguessed(report, facts) ? "without a guess" : "from the guess"}, turned ${degrees(Math.abs(parts.yaw_deg))} ` +
     `${parts.yaw_deg < 0 ? "clockwise" : "anticlockwise"}`, "plain"];
   if (report.status !== "accepted") {
     return [right,
