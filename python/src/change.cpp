@@ -97,8 +97,8 @@ py::dict valuesOf(const FieldChange& change) {
 }
 
 py::dict diff(const std::shared_ptr<FieldMap>& map_a, const std::shared_ptr<FieldMap>& map_b,
-              const std::tuple<Error, Error, Error>& errors, const NamedPlots& plots, double grid, bool same_crs,
-              const py::object& stop, int threads) {
+              const std::tuple<Error, Error, Error>& errors, const NamedPlots& plots, double grid,
+              bool same_crs, const py::object& stop, int threads) {
   DiffSettings settings;
   settings.error_a = errorOf(std::get<0>(errors));
   settings.error_b = errorOf(std::get<1>(errors));
