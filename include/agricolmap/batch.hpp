@@ -33,8 +33,8 @@ struct BatchSettings {
 struct BatchStrip {
   std::string id;
   std::string map;  ///< the id of its map
-  std::filesystem::path
-      folder;  ///< of its results; where it failed, of an earlier run or not there
+  /// Of its results; where it failed, of those of an earlier run, or not there.
+  std::filesystem::path folder;
   std::optional<Registration::Status> status;  ///< nothing: it failed, see `message`
   double plane_probability = 0.0;              ///< that it is right in the plane to 5 cm
   std::optional<double> expected_rms_m;        ///< in the plane

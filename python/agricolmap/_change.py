@@ -191,7 +191,8 @@ def diff(
     Raises:
         InputError: when the maps are in different coordinate systems, do not overlap or know nothing
             in common; when no plot lies where they are compared; for a path that is no map.
-        UsageError: for errors, plots and a grid that make no sense; for a surface model without errors.
+        UsageError: for errors, plots and a grid that make no sense; for a surface model without
+            errors.
         Interrupted: when `stop` is set.
     """
     handles = map_handle(map_a, "map_a"), map_handle(map_b, "map_b")

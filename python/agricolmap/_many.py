@@ -80,8 +80,8 @@ def batch(
     """Registers the strips of a manifest, each to a folder, as ``agricolmap batch`` does.
 
     A folder ``output/ID`` appears whole or not at all, whenever the program ends. A strip that fails
-    leaves what an earlier run made of it, and stops no other. Of all strips, ``summary.csv``, ``.json``, ``.html`` and
-    ``.png`` are written into `output`.
+    leaves what an earlier run made of it, and stops no other. Of all strips, ``summary.csv``,
+    ``.json``, ``.html`` and ``.png`` are written into `output`.
 
     Args:
         manifest: the path of a YAML file (``docs/batch.md``), or what would stand in it:

@@ -195,6 +195,8 @@ def test_folders_are_compared_as_the_program_does(folders, program, tmp_path):
 
 
 def test_what_is_no_map_is_refused(tmp_path, folders):
+    with pytest.raises(agricolmap.InputError, match="none.tif: there is no such file or folder"):
+        agricolmap.FieldMap.read(tmp_path / "none.tif")
     with pytest.raises(agricolmap.InputError, match="map.json"):
         agricolmap.FieldMap.read(tmp_path)
     with pytest.raises(agricolmap.InputError, match="map.json"):

@@ -217,8 +217,9 @@ FieldChange publicChange(const change::Comparison& compared, const Ground& groun
   found.rise = shareOf(compared.totals.rise);
   found.fall = shareOf(compared.totals.fall);
   found.median_detection_m = compared.totals.median_detection;
-  if (compared.totals.stable && !compared.flat)
+  if (compared.totals.stable && !compared.flat) {
     found.bare_ground = shareOf(*compared.totals.stable);
+  }
   return found;
 }
 

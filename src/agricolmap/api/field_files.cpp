@@ -149,7 +149,10 @@ FieldMap mapOfFolder(const std::filesystem::path& folder) {
 FieldMap readFieldMap(const std::filesystem::path& path) {
   requireProcessor();
   std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) ? surfaceAlone(path) : mapOfFolder(path);
+  if (!std::filesystem::exists(path, ignored)) {
+    throw InputError(fmt::format("{}: there is no such file or folder", path.string()));
+  }
+  return std::filesystem::is_directory(path, ignored) ? mapOfFolder(path) : surfaceAlone(path);
 }
 
 }  // namespace agricolmap

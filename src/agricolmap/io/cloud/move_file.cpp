@@ -25,8 +25,7 @@ namespace {
 /// Where formats have coordinates and colours alone in common.
 CopiedCloud rewriteFile(const std::filesystem::path& from, const OutputPath& to, CloudFormat format,
                         const CloudMove& move, const CopyProgress& progress) {
-  const auto points =
-      streamCloud(from, {{true, move.map}, kKeepLittle, progress, move.crs, from.string()});
+  const auto points = streamCloud(from, {{true, move.map}, kKeepLittle, progress, move.crs});
   const CloudFacts& facts = points->facts();
   if ((facts.origin - move.origin).cwiseAbs().maxCoeff() > kMaxFromOrigin) {
     refuseFar(from.string(), facts.points, facts.points);
